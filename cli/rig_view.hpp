@@ -6,7 +6,7 @@
 
 namespace surefoot::app {
 
-/// Nearest and farthest floor that a camera sees, as distances ahead of base_link [m].
+/// Nearest and farthest level floor in the middle image column: distances ahead of base_link [m].
 struct FloorView {
     double near_m = 0.0;
     double far_m = 0.0;  ///< infinite if the horizon is in view
@@ -22,7 +22,7 @@ struct RigView {
         int command = 0;
         std::string name;
         double toe_m = 0.0;       ///< farthest point of the landed foot, ahead of base_link
-        bool remembered = false;  ///< true = the whole landing area is in the blind zone
+        bool remembered = false;  ///< true = the whole landing area is in the blind zone.
                                   ///< The map must then contain this area from earlier frames.
     };
     std::string name;

@@ -20,8 +20,8 @@ class Option;
 
 namespace surefoot::app {
 
-/// One declared option or positional argument. Each function adds a rule and returns the option, so
-/// that rules can be chained. A value that breaks a rule ends the call with kExitUsage.
+/// One declared option or positional argument. Each function adds a rule or a property and returns
+/// the option, so that calls can be chained. A broken rule ends the call with kExitUsage.
 class Option {
   public:
     explicit Option(CLI::Option* option) : option_(option) {}

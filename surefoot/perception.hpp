@@ -23,15 +23,15 @@
 
 namespace surefoot {
 
-/// Opens a recording: a folder in the layout of EuRoC, KITTI or TUM RGB-D, a folder of side-by-side
-/// images, or a side-by-side video. `rig_file` is a calibration in any format that
-/// docs/get_started/own_camera.md names. If it is empty, the calibration of the recording is used.
-/// An error names the file and the cause.
+/// Opens a recording: a side-by-side video, or a folder of images in a layout that
+/// docs/get_started/own_camera.md names (such as EuRoC, KITTI, TUM RGB-D). `rig_file` is a
+/// calibration in any format of that page. If it is empty, the calibration of the recording is
+/// used. An error names the file and the cause.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_recording(
     const std::string& path, const std::string& rig_file = {});
 
-/// Loads a machine file by path, or a built-in machine by name ("rex"). An error names the file,
-/// the line, the key and the limit.
+/// Loads a machine file by path, or a built-in machine by name ("rex"). An error names the file or
+/// machine; an error of a value also names its line, key and limit.
 [[nodiscard]] Result<io::MachineFile> load_machine(const std::string& path_or_name);
 
 /// The whole processing in one object. Input: frames of a stereo or depth camera. Results: a rated
@@ -43,8 +43,8 @@ namespace surefoot {
 ///         for (const surefoot::FrameReport& report : perception->process(**frame))
 ///             std::cout << report.motion.T_odom_body.translation_m.transpose() << '\n';
 ///
-/// Start-up: the first frames are kept until they show gravity and the ground (pipeline::StartUp),
-/// then odom is placed and the kept frames are processed. Results are in odom: z up, origin below
+/// Start-up: frames are collected until they suffice to place odom, or until a time limit
+/// (pipeline::StartUp). Then the kept frames are processed. Results are in odom: z up, origin below
 /// the first base_link; see NOTATION.md. Not thread-safe; owns its threads. Takes about 36 ms of
 /// one core for a frame of 672 x 376 pixels (docs/evidence/headline_figures.md).
 class Perception {
@@ -83,7 +83,7 @@ class Perception {
     /// analysis only. A moving machine asks the gate process (surefoot-gate), which also checks the
     /// age of the map and the health of perception.
     [[nodiscard]] gate::Verdict verdict(std::uint8_t command) const;
-    /// Returns the verdict as one sentence: obstacle, position, value and limit.
+    /// Returns the verdict as one sentence, with any obstacle, position, value and limit.
     [[nodiscard]] std::string text_of(const gate::Verdict& verdict) const;
 
     /// Gives all other results: alignment, camera, depth image of the last frame, footholds.

@@ -64,7 +64,7 @@ int info(const InfoOptions& options) {
                i.rate_hz,
                static_cast<double>(i.bytes) * 1e-6);
     if (i.announced_frames && *i.announced_frames != i.frames) {
-        fmt::print("the video file announces {} frames, but only {} frames can be decoded\n",
+        fmt::print("the video file announces {} frames, but {} frames can be decoded\n",
                    *i.announced_frames,
                    i.frames);
     }

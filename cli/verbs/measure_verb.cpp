@@ -65,7 +65,7 @@ void print_repeated(const char* what, const eval::Repeated& r) {
     if (r.values_m.empty()) return;
     fmt::print(
         "{}: mean {:.1f} mm (standard error {:.1f} mm), standard deviation of one value {:.1f} mm, "
-        "measured {} times\n",
+        "number of values {}\n",
         what,
         1e3 * r.mean_m,
         1e3 * r.std_error_m,

@@ -129,7 +129,8 @@ void add_rate(VerbGroup verbs) {
         .positive();
     verb.option("--height",
                 o.height_m,
-                "if the height map is a PNG: height that the brightest pixel value means, in m")
+                "if the height map is a PNG: height of a white pixel (value 255, or 65535 in a "
+                "16-bit image), in m")
         .value("M")
         .positive();
 }

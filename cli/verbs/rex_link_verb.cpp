@@ -148,7 +148,8 @@ void add_rex_link(VerbGroup verbs) {
     auto [verb, o] = verbs.add<RexLinkOptions>(
         "rex-link",
         "act as the controller of a REX: ask the gate twice about each movement of the joystick, "
-        "and move after the second OK; exit code 1 = no gate listens at the address",
+        "and move after the second OK; exit code 1 = a movement was asked for, but no gate "
+        "answered",
         "surefoot rex-link --url ws://127.0.0.1:9090 --script "
         "service/rex_link/example_joystick.txt --tones service/rex_link/tones",
         rex_link_verb,

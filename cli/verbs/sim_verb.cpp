@@ -294,10 +294,12 @@ void add_sim(VerbGroup verbs) {
                     "sim.laser.step_deg gives smaller files")
             .value("F.ply|DIR")
             .excludes(out);
-    verb.option("--station",
-                o.stations,
-                "position of the laser scanner, in m; repeat the option for more stations "
-                "(default: the stations of the scene, or 1.6 m above the start of the path)")
+    verb.option(
+            "--station",
+            o.stations,
+            "position of the laser scanner, in m; repeat the option for more stations "
+            "(default: the stations of the scene, or 1.6 m above the ground at the start of the "
+            "path)")
         .value("X,Y,Z")
         .one_value_each()
         .needs(scan);

@@ -165,7 +165,8 @@ void add_stairs(VerbGroup verbs) {
         .positive();
     verb.option("--height",
                 o.terrain.height_m,
-                "if the height map is a PNG: height that the brightest pixel value means, in m")
+                "if the height map is a PNG: height of a white pixel (value 255, or 65535 in a "
+                "16-bit image), in m")
         .value("M")
         .positive();
     verb.option("--resolution",

@@ -9,7 +9,7 @@ namespace surefoot::app {
 void add_all_verbs(VerbGroup program);
 
 // Each function adds one verb. The _verb.cpp file that defines the function also contains the
-// options, the help, the examples and the code of the verb.
+// options, the help, the examples and the handler of the verb.
 void add_audit(VerbGroup verbs);
 void add_bench(VerbGroup verbs);
 void add_calibrate_mono(VerbGroup verbs);

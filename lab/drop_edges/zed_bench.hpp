@@ -21,8 +21,8 @@ inline constexpr double kCellSize_m = 0.025;  ///< side of a map cell in these e
 /// Returns a material with this pattern and with the contrast of the fitted ZED profile.
 [[nodiscard]] sim::Material zed_look(sim::Pattern pattern, std::uint64_t seed);
 
-/// Renders stereo pairs with the fitted ZED profile and matches them. The camera is 0.95 m above z
-/// = 0 and looks 32 deg down. Keeps the true depth together with the matched depth.
+/// Renders stereo pairs with the fitted ZED profile, matches them and keeps true and matched depth.
+/// At the poses of `pose_over` the camera is 0.95 m above z = 0 and looks 32 deg down.
 class ZedBench {
   public:
     /// `noise`: factor on the image noise of the profile. `executor` must outlive the bench.

@@ -30,7 +30,7 @@ struct Outcome {
     int allowed_before = 0;  ///< number of OKs before the fault; the run counts only if all were OK
     int asked_after = 0;     ///< number of queries after the fault began
     int allowed_late = 0;    ///< number of OKs after the deadline or the first inhibit
-    std::int64_t last_allowed_ns = -1;         ///< time from the fault to the last OK; -1 = no OK
+    std::int64_t last_allowed_ns = -1;  ///< time from the fault to the last OK; -1 = none after it
     std::optional<std::int64_t> latency_ns;    ///< time from the fault to the first inhibit
     gate::Reason reason = gate::Reason::none;  ///< most specific reason of the first inhibit
 };

@@ -26,8 +26,8 @@ class VelocityFusion {
     /// EuRoC rigs.
     explicit VelocityFusion(const odometry::InertialConfig& imu);
 
-    /// Returns `vision` with the fused pose and motion. Returns `vision` unchanged before the start
-    /// and where IMU samples are missing. The health is always that of vision. `samples`: IMU
+    /// Returns `vision` with the fused pose and motion. Before the start, and where IMU samples are
+    /// missing, the motion is that of vision. The health is always that of vision. `samples`: IMU
     /// samples since the last call.
     [[nodiscard]] MotionEstimate update(const MotionEstimate& vision,
                                         std::span<const ImuSample> samples);

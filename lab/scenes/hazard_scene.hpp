@@ -17,7 +17,7 @@ namespace surefoot::experiments {
 enum class Hazard : std::uint8_t {
     stairs_down,
     stairs_up,
-    kerb,  ///< height difference down or up
+    kerb,  ///< one step of 0.04 to 0.18 m, down or up
     hole,
     platform,  ///< edge of a platform: the lower level is 0.3 to 1.2 m down, or a void
     wall,

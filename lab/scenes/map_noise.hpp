@@ -79,13 +79,13 @@ class SceneCells {
         float low_m = 0.0F;          ///< lowest sample [m]; voids do not count
         float high_m = 0.0F;         ///< highest sample [m]; overhangs do not count
         float highest_m = 0.0F;      ///< highest sample inside the cell [m]
-        float under_m = 0.0F;        ///< underside of an overhang above the middle; NaN = none
+        float under_m = 0.0F;        ///< underside of an overhang above the cell; NaN = none
         float top_m = 0.0F;          ///< top of this overhang [m]
         float share_high = 0.0F;     ///< share of samples nearer to high_m than to low_m
         bool ground = false;         ///< true: at least one sample is not a void
-        bool seen = false;           ///< true: both cameras see one of 5 points in the cell
-        bool beside_seen = false;    ///< true: at least one of its 8 neighbours is seen
-        float beside_high_m = 0.0F;  ///< highest sample of these neighbours [m]
+        bool seen = false;           ///< true: both cameras see at least one of 5 points in it
+        bool beside_seen = false;    ///< true: the cell or one of its 8 neighbours is seen
+        float beside_high_m = 0.0F;  ///< highest sample of these nine cells [m]
     };
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return geometry_; }
     [[nodiscard]] const Image<Cell>& cells() const noexcept { return cells_; }
@@ -107,7 +107,7 @@ struct MadeMap {
     Image<float> clearance_m;
 };
 
-/// Returns a map without errors: the highest point of each seen cell, with sigma 1 mm.
+/// Returns a map without errors: the top of seen cells, and of tall cells beside them; sigma 1 mm.
 [[nodiscard]] MadeMap clean_map(const SceneCells& scene);
 /// Draws a map with errors. `once`: the machine did not walk, so all observations have one pose.
 [[nodiscard]] MadeMap noisy_map(const SceneCells& scene,

@@ -20,8 +20,8 @@ struct StairsCase {
     /// rendered images of the `zed` profile. Their noise gives our matcher an error of about 0.25
     /// or 0.5 px on level floor. images_xF: image noise of `zed` times F.
     std::string mode;
-    /// Keeps every n-th frame. 0: keeps every frame, but judges only the last frame and measures
-    /// the disparity noise only there.
+    /// Keeps every n-th frame and measures its disparity noise. 0: keeps every frame, but measures
+    /// the disparity noise of the last frame only.
     int every = 0;
 
     /// Sets scene, seed, sensor and noise. A usage error names an unknown mode.

@@ -7,7 +7,7 @@
 
 namespace surefoot::app {
 
-/// Prints the JSON object of a call with --json on stdout. Each call prints exactly one object.
+/// Prints the JSON object of a program run with --json on stdout. Each run prints one object.
 void print_answer(const std::string& json_object);
 /// Returns true after print_answer was called.
 [[nodiscard]] bool answered() noexcept;

@@ -8,11 +8,11 @@
 
 namespace surefoot::app {
 
-/// Loads the settings of a call. Warns about each setting that is given by its former name; a call
-/// that loads twice warns once. Not thread-safe.
+/// Loads the settings of the command line. Warns about each setting that is given by its former
+/// name, only once in a run of the program. Not thread-safe.
 [[nodiscard]] Result<Settings> load_settings(const CommonOptions& options);
 
-/// Applies --config and --set of a call to a program's own settings. Warns like load_settings.
+/// Applies --config and --set to a program's own settings. Warns like load_settings.
 [[nodiscard]] Status apply_overrides(const CommonOptions& options,
                                      const io::DescribeConfig& describe);
 

@@ -8,7 +8,7 @@
 
 namespace surefoot::app {
 
-/// Exit codes of every verb. `gate` returns kExitUsage for a wrong command line only.
+/// Exit codes of every verb. The verb `gate` returns kExitUsage only for a wrong command line.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;

@@ -259,8 +259,9 @@ Status Gatekeeper::check_radius(double radius_m) const {
     const bool is_number = radius_m > 0.0 && radius_m <= most_m;
     if (is_number && tenth_mm(radius_m) >= least_tenth_mm) return {};
     return refuse_attestation(
-        fmt::format("the radius of {} m must be from {:.4f} m (the smallest circle that contains "
-                    "both soles) to {} m (attestation_radius_m of the machine file)",
+        fmt::format("the radius of {} m must be from {:.4f} m (the smallest circle around "
+                    "base_link that contains both soles) to {} m (attestation_radius_m of the "
+                    "machine file)",
                     radius_m,
                     static_cast<double>(least_tenth_mm) * 1e-4,
                     most_m));

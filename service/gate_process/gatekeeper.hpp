@@ -79,8 +79,8 @@ class Gatekeeper final : public StepGate {
                                 double radius_m,
                                 std::int64_t now_ns) override;
     void forget(std::uint64_t connection) override { sequences_.erase(connection); }
-    /// Passes on at most a hundred refused acts at once and ten per second on average, so that no
-    /// client can fill the log. The next logged act contains the number of omitted acts.
+    /// Passes on at most 100 acts of outcome `no_right` at once and 10 a second on average, so that
+    /// no client can fill the log. The next logged act contains the number of omitted acts.
     void note(const Act& act) override;
 
   private:

@@ -14,7 +14,7 @@ namespace surefoot::gate_process {
 /// Conditions under which the outlook may be computed now.
 struct OutlookDemand {
     bool subscribed = false;      ///< at least one client subscribes to the outlook
-    bool question_waits = false;  ///< a client has unread bytes, and answers have priority
+    bool question_waits = false;  ///< a client sent bytes that wait; answers have priority
 };
 
 /// Computes the gate's answer to every movement of the machine, for display. One call judges one
@@ -23,7 +23,7 @@ struct OutlookDemand {
 /// states. Judging allocates nothing, but making the message allocates.
 class OutlookRounds {
   public:
-    /// Call it every few milliseconds. Asks the gate only if a client subscribes. Unread bytes
+    /// Call it every few milliseconds. Asks the gate only if a client subscribes. Waiting bytes
     /// delay a movement by a few calls at most. So one client that floods the gate cannot stop the
     /// outlook of the others.
     [[nodiscard]] std::optional<TopicMessage> next(StepGate& gate,

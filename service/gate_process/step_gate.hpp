@@ -84,7 +84,7 @@ class StepGate {
     [[nodiscard]] virtual Status attest(std::uint64_t connection,
                                         double radius_m,
                                         std::int64_t now_ns) = 0;
-    /// Notes that the client has disconnected: answers to this client are no longer valid.
+    /// Forgets a client that has disconnected, with the last sequence of its questions.
     virtual void forget(std::uint64_t connection) = 0;
     /// Records an act or a refused act in the audit log.
     virtual void note(const Act& act) = 0;

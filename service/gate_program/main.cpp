@@ -104,8 +104,8 @@ class ChannelNews {
         const bool was_lost = reported_ == gate_process::ChannelState::lost;
         reported_ = state;
         if (state == gate_process::ChannelState::lost)
-            say("the channel was deleted, replaced or cut off; no step is allowed until perception "
-                "has created the channel again");
+            say("the channel was deleted, replaced or cut off; without new maps the gate allows no "
+                "step. Wait until perception has repaired the channel");
         if (state == gate_process::ChannelState::open && was_lost) say("the channel is open again");
         if (state == gate_process::ChannelState::forged)
             say("another process has changed a map; the gate is in FAULT until an operator re-arms "

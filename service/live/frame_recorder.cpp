@@ -249,8 +249,8 @@ std::string FrameRecorder::reason_in_words() {
     const std::lock_guard lock(mutex_);
     switch (end_) {
         case End::went_back: return "; the recording ended, because the source went back in time";
-        case End::source_ended: return "; the recording ended with the source";
-        case End::service_ended: return "; the recording ended with the service";
+        case End::source_ended: return "; the recording ended, because the source ended";
+        case End::service_ended: return "; the recording ended, because the service ended";
         case End::none:
         case End::wished: break;
     }

@@ -195,7 +195,7 @@ TEST_F(FrameRecorderTest, ASourceThatEndsEndsItsRecording) {
     RecordedSource recorded_source(source, recorder);
     begin();
     while (recorded_source.next().value()) continue;
-    EXPECT_NE(wait_for(RecordingStage::ready).text.find("ended with the source"),
+    EXPECT_NE(wait_for(RecordingStage::ready).text.find("because the source ended"),
               std::string::npos);
     EXPECT_EQ(info().frames, 5);
 }

@@ -25,7 +25,7 @@
 namespace surefoot::app {
 
 /// Runs perception on its own thread, beside the gate process and an optional steered walk. The
-/// first thread supervises the gate independently of perception, so that a hanging frame cannot
+/// thread of run() supervises the gate independently of perception, so that a hanging frame cannot
 /// delay the restart of the gate.
 class LiveService {
   public:

@@ -48,7 +48,7 @@ void MapChannel::look_after(std::int64_t now_ns) {
     next_ns_ = now_ns + kMendEvery_ns;
     const auto mended = writer.mend();
     if (mended && *mended)
-        log_warning(fmt::format("the file of the map channel was damaged; serve repaired it: {}",
+        log_warning(fmt::format("the file of the map channel was damaged ({}); serve repaired it",
                                 **mended));
     if (!mended && mended.error().message != logged_) log_error(mended.error().message);
     logged_ = mended ? "" : mended.error().message;

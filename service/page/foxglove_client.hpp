@@ -26,9 +26,9 @@ struct SocketMessage {
 /// chooses the messages to send. This class has no socket, no thread and no clock. The caller
 /// passes the time `now_ns` of the steady clock.
 ///
-/// The client gets the newest message of each subscribed channel, and the time of the source with
-/// each frame. Ground, points and images wait while all messages together exceed 2 MB/s. The
-/// channel that waited longest goes first. Not thread-safe.
+/// The client gets the newest message of each subscribed channel (of `verdict` each new message),
+/// and the time of the source with each frame. Ground, points and images wait while all messages
+/// together exceed 2 MB/s. The channel that waited longest goes first. Not thread-safe.
 class FoxgloveClient {
   public:
     static constexpr std::int64_t kMostBytesPerSecond = 2'000'000;
@@ -42,8 +42,8 @@ class FoxgloveClient {
 
     /// Reads one message of the client. A request that the service cannot serve is answered with a
     /// status message. Returns an error if the client sent too many unreadable texts, or too many
-    /// requests before it received the replies. Then the caller must close the connection and
-    /// send the text of the error.
+    /// requests before it received the replies. Then the caller must close the connection with
+    /// the text of the error as the reason.
     [[nodiscard]] Status take(bool is_text, std::string_view bytes, std::int64_t now_ns);
     /// Returns the messages to send now, in order. Call it only after all earlier messages have
     /// left: a slow client then gets fewer messages, but never an old one.

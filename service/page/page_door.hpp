@@ -40,9 +40,9 @@ struct HostAndPort {
                                  std::string_view host,
                                  std::string_view origin);
 
-/// Returns the headers of every HTTP answer. They prevent other pages from framing the page,
-/// guessing its content type or adding a script. `host`: the request's host, which must satisfy
-/// is_own_host(); empty for a refused request.
+/// Returns the headers of every HTTP answer. With them a browser shows the page in no other page,
+/// guesses no content type and runs only the page's own scripts. `host`: the request's host, which
+/// must satisfy is_own_host(); empty for a refused request.
 [[nodiscard]] std::vector<std::pair<std::string_view, std::string>> security_headers(
     std::string_view host);
 /// Returns the answer to a request with a wrong Host header. It names the address to open.

@@ -32,8 +32,8 @@ struct PageFrame {
     Image<float> disparity_px;  ///< NaN or infinite = unknown
 };
 
-/// Upper limits of the rates at which the service sends maps, images and layers to a page. A page's
-/// own wish cannot exceed them. Thread-safe.
+/// Upper limits of the rates at which the service sends maps, images and layers to a page. A page
+/// cannot request higher rates. Thread-safe.
 struct PageRates {
     std::atomic<double> map_hz{PageWish::kMaxMap_hz};
     std::atomic<double> image_hz{PageWish::kMaxImage_hz};

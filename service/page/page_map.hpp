@@ -17,7 +17,7 @@ enum class GroundState : std::uint8_t { unknown = 0, free = 1, unsafe = 2, unsur
 /// Operator attestation: an operator confirmed this ground.
 inline constexpr std::uint8_t kAttestedBit = 1U << 2U;
 inline constexpr std::uint8_t kDropBit = 1U << 3U;  ///< evidence of a drop beyond the limit
-/// An obstacle that the body of the machine can hit.
+/// An object above the cell hangs lower than the machine is high.
 inline constexpr std::uint8_t kOverheadBit = 1U << 4U;
 
 /// A cell in the form that the page receives. messages.json defines each value.
@@ -61,10 +61,10 @@ struct ColourLimits {
 
 /// Returns the colour class of a cell, for display only: it is not a permission to step. It rates
 /// one cell and its four neighbours. The gate rates whole feet, their paths and the body.
-/// - unknown: the cell was never measured.
+/// - unknown: the map has no measured height of the cell.
 /// - unsure: the cell's sigma exceeds the gate's limit for a cell.
-/// - unsafe: the cell has evidence of a drop, or an obstacle on or above it is lower than the
-///   machine, or the height difference to a neighbour exceeds the step limits of walking.
+/// - unsafe: the cell has evidence of a drop, or an object above the cell hangs lower than the
+///   machine is high, or the height difference to a neighbour exceeds the step limits of walking.
 /// - free: all other cells.
 [[nodiscard]] GroundState ground_state(const grid::MapSnapshot& snapshot,
                                        int ix,

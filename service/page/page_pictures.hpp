@@ -10,7 +10,7 @@ namespace surefoot::page {
 /// Returns the JPEG of a camera image; empty if the image is empty.
 [[nodiscard]] std::string jpeg_of(const GreyImage& image);
 /// Returns the JPEG of a disparity image in false colours: bright = near, black = unknown. The
-/// largest disparity of the image gets the brightest colour. Empty if the image is empty.
+/// largest disparity, at least 1 px, gets the brightest colour. Empty if the image is empty.
 [[nodiscard]] std::string jpeg_of_disparity(const Image<float>& disparity_px);
 
 }  // namespace surefoot::page

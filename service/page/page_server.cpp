@@ -442,7 +442,8 @@ void Viewer::read() {
 
 void Viewer::on_message() {
     if (!messages_.take(steady_ns()))
-        return say_goodbye("too many messages: the limit is 40 in a second; reload the page");
+        return say_goodbye(
+            "too many messages: the limit is 40 a second on average; reload the page");
     const auto bytes = buffer_.cdata();
     const Status heard = hear({static_cast<const char*>(bytes.data()), bytes.size()});
     buffer_.clear();
@@ -473,7 +474,8 @@ Demand Viewer::demand() const {
 
 void Viewer::take(const PageWish& wish) {
     if (!wishes_.take(steady_ns()))
-        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
+        return say_goodbye(
+            "too many requests: the limit is 5 a second on average; reload the page");
     wish_ = wish;
     // Send all wanted data again.
     map_.reset();
@@ -500,14 +502,16 @@ void Viewer::take(const PlaybackWish& wish) {
 
 void Viewer::take(const SettingWish& wish) {
     if (!wishes_.take(steady_ns()))
-        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
+        return say_goodbye(
+            "too many requests: the limit is 5 a second on average; reload the page");
     say(setting_text(sockets_.controls.settings.ask(wish)));
     write();
 }
 
 void Viewer::take(const RecordWish& wish) {
     if (!wishes_.take(steady_ns()))
-        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
+        return say_goodbye(
+            "too many requests: the limit is 5 a second on average; reload the page");
     if (!sockets_.controls.recording.ask(wish))
         say_goodbye("record: " + sockets_.controls.recording.state().text);
 }

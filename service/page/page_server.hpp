@@ -26,7 +26,7 @@ struct PageServerConfig {
     std::uint16_t port = 8080;   ///< TCP port; 0 = any free port
     int more_ports = 16;         ///< number of following ports to try if `port` is in use
     std::string token;           ///< the WebSocket's URL needs ?token=...; empty = no token
-    gate_process::TlsFiles tls;  ///< empty = plain HTTP, on loopback only
+    gate_process::TlsFiles tls;  ///< empty = plain HTTP; beyond loopback only with `insecure`
     std::string insecure;  ///< gate_process::kInsecureSentence allows plain HTTP beyond loopback
     /// Addresses of the page through a proxy or a tunnel, e.g. "https://robot.example".
     std::vector<std::string> origins;
@@ -58,11 +58,11 @@ class PageSockets;
 /// path, for clients that offer a Foxglove subprotocol.
 ///
 /// All work happens on the thread that calls `run`. The next message for a viewer is made after the
-/// previous message was sent: a slow viewer gets fewer messages, but never an old message. A viewer
+/// previous message was sent: a slow viewer gets fewer messages, but never an old message. A page
 /// that sends an invalid message gets the reason and is disconnected. With a certificate the server
 /// uses TLS (gate_process::TlsDoor), but clients on this machine may still connect without TLS.
 ///
-/// A request must name the page by a name or address of this computer and the page's port. A web
+/// The Host header of a request must name this page (is_own_host() in page_door.hpp). A web
 /// page that opens a socket must be the page itself (page_door.hpp) or a configured origin. The
 /// server ends connections that send their request too slowly or do not receive. When all slots are
 /// taken, gate_process::Slots chooses the connection to end.

@@ -89,10 +89,10 @@ enum class LinkState : std::uint8_t {
 };
 
 /// State machine of the REX master unit. It takes the joystick's code, asks the gate twice, and
-/// lets the machine move only after the second OK. Everything else inhibits: a negative verdict, no
-/// answer in time, an answer to another question, damaged bytes, an expired OK, a new connection.
-/// The link asks about a refused code again only after the joystick was at rest. Every step needs
-/// two new OKs, however long the joystick is held.
+/// lets the machine move only after the second OK. It ignores late answers to earlier attempts.
+/// Everything else inhibits: a negative verdict, no answer in time, an answer to an unknown
+/// question, damaged bytes, an expired OK, a new connection. The link asks about a refused code
+/// again only after the joystick was at rest. Every step needs two new OKs.
 ///
 /// Each event is a call with the steady clock's `now_ns`. The link reads no clock, sends nothing
 /// and owns no thread. If the time goes backwards, the current attempt is inhibited. Not
@@ -107,7 +107,7 @@ class RexLink {
     [[nodiscard]] Actions connected(std::uint64_t nonce, std::int64_t now_ns);
     /// Notes the end of the connection. Inhibits a running attempt; a step in progress goes on.
     [[nodiscard]] Actions disconnected(std::int64_t now_ns);
-    /// Takes the joystick's code; 0 = at rest. Repeating the same code changes nothing.
+    /// Takes the joystick's code; 0 = at rest. A new code ends an attempt; the same code does not.
     [[nodiscard]] Actions joystick(std::uint8_t code, std::int64_t now_ns);
     /// Takes an answer. The answer has an effect only while an attempt is in progress.
     [[nodiscard]] Actions answer(const Answer& answer, std::int64_t now_ns);

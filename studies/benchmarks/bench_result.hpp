@@ -59,8 +59,8 @@ struct BenchResult {
 [[nodiscard]] Result<std::vector<BenchResult>> bench_places(const CommonOptions& common,
                                                             Executor& executor);
 
-/// Times stereo matching by our matcher and by OpenCV. With more than one thread it also times two
-/// matchers at once: this is the upper bound of the gain from two threads.
+/// Times stereo matching by our matcher and by OpenCV. Unless --threads is 1, also times two
+/// matchers at once: half of their time is a lower bound for one match on two threads.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common,
                                                             Executor& executor);
 

@@ -20,7 +20,7 @@ struct Workload {
     std::string name;
     int repeats = 1;  ///< repetitions that give a stable time within two seconds
     Prepare prepare;
-    /// The same job by the reference implementation (Way::plain). Empty = there is none.
+    /// The same job by the plain implementation (Way::plain). Empty = there is none.
     Prepare prepare_plain = {};
     int queries = 1;  ///< queries per call, because one query is shorter than the clock step
 };

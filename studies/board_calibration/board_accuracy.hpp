@@ -40,7 +40,7 @@ struct ThesisAccuracy {
     double std_m;
 };
 [[nodiscard]] const std::vector<ThesisAccuracy>& thesis_accuracy();
-/// Returns "ZED" or "DUO"; nullopt if the reference thesis did not measure this camera.
+/// Returns "ZED" or "DUO" if the name begins with "zed" or "duo"; otherwise nullopt.
 [[nodiscard]] std::optional<std::string> thesis_camera(const std::string& rig_name);
 
 /// Depth accuracy of a rig at one distance of the board.

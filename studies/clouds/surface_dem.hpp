@@ -48,10 +48,10 @@ using EachBlock =
 /// the lowest group that has a surface. If other points lie above the group, a surface needs at
 /// least twice the minimum number of points, because mirror images lie below a floor. Within the
 /// group the ground is the highest surface that enough points share and that is denser than a
-/// uniform scatter of the group. Surfaces with less than a fifth of the points of the surrounding
-/// cells are removed: points in flight between two surfaces are scattered or few. A cell with fewer
-/// points than a surface needs also counts the points of its neighbour cells. The result does not
-/// depend on the order of the points or on the number of threads.
+/// uniform scatter of the group. A surface is removed if it has less than a fifth of the points of
+/// the cells around it (upper quartile): points in flight between two surfaces are scattered or
+/// few. A cell with fewer points than a surface needs also counts the points of its neighbour
+/// cells. The result does not depend on the order of the points or on the number of threads.
 ///
 /// Reads the cloud once to count, and once more for each 2^25 points. Memory grows with the number
 /// of cells, plus at most 0.5 GB or the need of the fullest row of cells.
@@ -65,7 +65,7 @@ using EachBlock =
 [[nodiscard]] Result<SurfaceRules> surface_rules(std::optional<double> lowest_z_m,
                                                  std::optional<double> highest_z_m);
 
-/// Returns a text about the points and cells that were left out; empty if there are none.
+/// Returns a text about left-out points, unknown cells and overhung cells; empty if none exist.
 [[nodiscard]] std::string left_out_text(const SurfaceDem& dem);
 
 }  // namespace surefoot::app

@@ -27,8 +27,8 @@ struct ThinnedCloud {
                                   const std::string& cloud);
 
 /// Writes the mean point of each voxel to `out_file`. Splits a cloud with more than
-/// `most_in_memory` points into slabs along x and processes one slab after the other; the output is
-/// the same. The slabs lie in a temporary folder beside the output (12 bytes a point). Memory: 40
+/// `most_in_memory` points into slabs along x and processes them one by one; this does not change
+/// the output. The slabs lie in a temporary folder beside the output (12 bytes a point). Memory: 40
 /// bytes for each of `most_in_memory` points, or for each point of the fullest slab if it has more.
 [[nodiscard]] Result<ThinnedCloud> thin_cloud(const std::string& cloud,
                                               double size_m,

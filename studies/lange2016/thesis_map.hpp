@@ -63,7 +63,7 @@ struct GroundBox {
 };
 
 /// Measures a staircase by the histogram of heights. Sets riser_m, riser_se_m, riser_spread_m,
-/// risers, first_riser_m, going_m, going_se_m, going_spread_m. NaN = no staircase.
+/// risers (0 = none), first_riser_m, going_m, going_se_m, going_spread_m. NaN = not found.
 void measure_stairs(std::span<const Eigen::Vector3f> points_m,
                     const GroundBox& box,
                     ThesisFigures& figures);

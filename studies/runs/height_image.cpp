@@ -9,7 +9,7 @@ Result<io::Dem> read_height_image(const std::string& file, double scale_m_per_px
     if (scale_m_per_px <= 0.0 || height_m <= 0.0) {
         return usage_error(
             fmt::format("{}: a height image needs --scale (side of a pixel, in m) and --height "
-                        "(height of the brightest pixel value, in m), both above 0",
+                        "(height of a white pixel, in m), both above 0",
                         file));
     }
     return io::read_dem_image(file, scale_m_per_px, height_m);

@@ -28,8 +28,8 @@ struct NamedLayer {
 /// kLayerNames. A layer that was not computed has only unknown cells.
 [[nodiscard]] std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline);
 
-/// Returns a PNG that shows all layers, with `columns` layers side by side. All height layers use
-/// the value range of the elevation, so that their colours can be compared.
+/// Returns a PNG that shows all layers, with `columns` layers side by side. The layers highest and
+/// lowest and the height bounds share the colour range of the elevation.
 [[nodiscard]] std::vector<std::uint8_t> layer_sheet_png(const grid::GridGeometry& geometry,
                                                         std::span<const NamedLayer> layers,
                                                         double safe_threshold,

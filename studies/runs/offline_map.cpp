@@ -58,7 +58,7 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     if (auto status = grid::build_snapshot(input, *map.snapshot); !status) return status.error();
     map.assumed = height->notes;
     for (const char* assumed : {"no drift since the last observation of the cells",
-                                "gravity is the z axis of the grid",
+                                "the z axis of the grid points up",
                                 "odometry and camera were healthy"})
         map.assumed.emplace_back(assumed);
     return map;

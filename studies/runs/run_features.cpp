@@ -70,8 +70,8 @@ std::string features_count_text(const RunFeatures& features) {
     std::string text = features_count_text(features.confirmed);
     const std::size_t drops = features.unconfirmed.drops.size();
     if (drops > 0)
-        text +=
-            fmt::format("; {} drop{} seen only once, not confirmed", drops, drops == 1 ? "" : "s");
+        text += fmt::format(
+            "; {} drop{} not confirmed by a second observation", drops, drops == 1 ? "" : "s");
     return text;
 }
 

@@ -24,7 +24,7 @@ struct RunFeatures {
 /// Splits the tracked features without a comparison, for runs whose final map cannot be read.
 [[nodiscard]] RunFeatures split_by_confirmation(stairs::TerrainFeatures tracked);
 
-/// Returns a text such as "..., 2 drops, ...; 3 edges; 1 drop seen only once, not confirmed".
+/// Returns "..., 2 drops, ...; 3 edges; 1 drop not confirmed by a second observation".
 [[nodiscard]] std::string features_count_text(const RunFeatures& features);
 
 }  // namespace surefoot::app

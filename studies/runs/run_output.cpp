@@ -334,10 +334,9 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
                     pipeline.alignment().reason);
     if (record.waited_frames > 0) {
         text += fmt::format(
-            "the odom frame starts {} frames after the source, because these frames were too "
-            "bright, too dark or without ground (mount.wait_for_exposure_s, "
-            "mount.wait_for_ground_s, "
-            "mount.wait_for_search_s)\n",
+            "the run leaves out the first {} frames, because they were too bright, too dark or "
+            "showed no ground; the settings mount.wait_for_exposure_s, mount.wait_for_ground_s "
+            "and mount.wait_for_search_s limit this wait\n",
             record.waited_frames);
     }
     if (const auto& self_calibration = pipeline.self_calibration()) {

@@ -42,7 +42,7 @@ struct Percentiles {
     std::size_t samples = 0;
 };
 [[nodiscard]] Percentiles percentiles(std::vector<double> values);
-/// Returns the time of one stage [ms] over full frames only. Odometry counts on every frame.
+/// Returns the time of one stage [ms] over the full frames; for odometry, over all frames.
 [[nodiscard]] Percentiles stage_percentiles(const RunRecord& record, Stage stage);
 /// Returns the time of all stages together [ms], over the frames with full processing.
 [[nodiscard]] Percentiles frame_percentiles(const RunRecord& record);

@@ -91,10 +91,12 @@ void add_truth(const RunRecord& record,
                                                  {"Safe or unsafe, compared with the truth",
                                                   fmt::format("threshold {:.2f}", safe_threshold)},
                                                  drawn))});
-    content.figures.push_back({"Elevation, median |error|",
-                               fmt::format("{:.1f}", 1e3 * t.maps.elevation.median_abs_m),
-                               "mm",
-                               "compared with the highest true surface of the cell"});
+    content.figures.push_back(
+        {"Elevation, median |error|",
+         fmt::format("{:.1f}", 1e3 * t.maps.elevation.median_abs_m),
+         "mm",
+         "compared with the highest true surface of the cell; under an object in the map, with the "
+         "true surface nearest to the map height"});
     content.figures.push_back({"Elevation, 90th percentile of |error|",
                                fmt::format("{:.1f}", 1e3 * t.maps.elevation.p90_abs_m),
                                "mm",
@@ -227,7 +229,7 @@ Status write_pictures_and_report(const RunOptions& options,
     content.title = fmt::format("Surefoot: {}", record.source.path);
     content.summary = summary_lines(record, pipeline);
     content.pictures.push_back({"Height of the ground, from above", elevation_png});
-    content.pictures.push_back({"Safe to step or not; hatched: never observed", rating_png});
+    content.pictures.push_back({"Safe to step or not; hatched: unknown", rating_png});
     content.sections.push_back(stairs_section(pipeline, stairs_png, classes_png));
     add_camera_pictures(pipeline, content);
     add_sigma_pictures(pipeline, drawn, content);

@@ -13,7 +13,7 @@
 
 namespace surefoot::app {
 
-/// Errors of the reported depth. Counts only pixels with a low outlier probability.
+/// Errors of the reported depth at the pixels with an outlier probability of at most 0.5.
 struct DepthFigures {
     std::int64_t pixels = 0;
     double within_3_sigma = 0.0;  ///< share of pixels with |disparity error| <= 3 sigma

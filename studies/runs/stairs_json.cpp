@@ -294,8 +294,8 @@ const char* gravity_name(grid::GravitySource source) {
 
 std::string gravity_note(grid::GravitySource source) {
     if (source != grid::GravitySource::assumed) return "";
-    return "gravity was assumed: all heights, slopes, steps and drops are tilted by the unknown "
-           "tilt of the camera (run with an IMU, or set mount.pitch_deg)";
+    return "gravity was assumed: the unknown tilt of the camera falsifies all heights, slopes, "
+           "steps and drops (run with an IMU, or set mount.pitch_deg)";
 }
 
 std::string stairs_json(const stairs::TerrainFeatures& features,

@@ -17,7 +17,7 @@
 namespace surefoot::app {
 
 /// Returns the positions of the scanner in the world [m]. They are those of the scene file, or one
-/// position above the start of the path.
+/// position 1.6 m above the ground at the start of the path.
 [[nodiscard]] std::vector<Eigen::Vector3d> stations_of(const sim::ScriptedScene& script);
 
 /// Returns the expected number of points of all stations together. A coarse scan from each station

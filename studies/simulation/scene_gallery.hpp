@@ -10,7 +10,7 @@
 namespace surefoot::app {
 
 /// Writes two pictures of every scene and an index.html that shows them. NAME.png is the left image
-/// half-way along the path. For a walk, it is the image before the first turn of the machine.
+/// at half of the duration of the path. For a walk with turns, it is the image at the first turn.
 /// NAME_height.png is the true ground from above, with the path.
 [[nodiscard]] Status write_scene_gallery(const std::string& folder,
                                          std::uint64_t seed,

@@ -87,7 +87,7 @@ std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results)
         all.push_back(bars_of(
             pool, TallyKey::reason, "Reasons of the refusals of clearly safe movements, " + at));
         all.push_back(
-            bars_of(pool, TallyKey::proof, "Missing proofs of clearly safe movements, " + at));
+            bars_of(pool, TallyKey::proof, "Proofs that failed for clearly safe movements, " + at));
         all.push_back(bars_of(pool, TallyKey::danger, "Missed hazards, " + at));
     }
     return all;

@@ -42,7 +42,7 @@ struct SuiteCase {
 enum class FigureKind : std::uint8_t { count, share, length_m, percent, pixels, number };
 
 /// A figure of the suite. `SuiteResult::figures` has one value for each entry of suite_figures(),
-/// in the same order. `lower_is_better` decides which case is the worst.
+/// in the same order. `lower_is_better` decides which value is the worst.
 struct SuiteFigure {
     const char* name;
     const char* group;  ///< table of the report that contains this figure

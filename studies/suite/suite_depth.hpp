@@ -11,8 +11,8 @@ namespace surefoot::app {
 /// sparsification area (eval::Sparsification::auc) of single frames.
 class DepthOrder {
   public:
-    /// Evaluates every fifth frame. Skips the frames that were buffered for the alignment, because
-    /// the source has no true depth for them any more.
+    /// Evaluates every fifth frame of a rectified source. Skips the frames that were buffered for
+    /// the alignment, because the source no longer has their true depth.
     void after_frame(const FrameReport& frame,
                      const sim::SceneSource& source,
                      const pipeline::Pipeline& pipeline);

@@ -16,9 +16,9 @@ struct PlannedCase {
     int frames = 0;
 };
 
-/// Returns all selected cases in the order in which they run. The order is by seed, so that an
-/// interrupted suite has covered every scene. Within a seed long cases run first, so that threads
-/// finish at about the same time. Impossible selections are usage errors.
+/// Returns all selected cases in the order in which they run. The order is by seed, so that every
+/// scene has run before the second seed begins. Within a seed long cases run first, so that threads
+/// finish at about the same time. An unknown or repeated name is a usage error.
 ///
 /// A walking machine takes 10 s for a step and moves little from frame to frame. Its camera
 /// therefore runs at 4 Hz at most, and the quick suite covers only its first steps.

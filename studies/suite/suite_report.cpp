@@ -80,7 +80,8 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
          fmt::format("{:.0f}", missed),
          "",
          fmt::format(
-             "of {:.0f} clear-cut questions; {:.0f} more hazards within the margin of the oracle",
+             "of {:.0f} clear-cut questions; {:.0f} more missed hazards are dangerous by less than "
+             "the margin of the oracle",
              sum_of(results, "questions"),
              sum_of(results, "borderline_missed"))});
     const double allowed = allowed_share(results);
@@ -100,7 +101,8 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
     if (allowed == 0.0) {
         content.reasons.push_back(
             "The gate allowed no movement in these runs, so the number of missed hazards says "
-            "nothing yet. In short runs the camera never sees the ground around the feet.");
+            "nothing yet. In a short run the camera has often not seen the ground around the "
+            "feet.");
     }
     if (const double steps = sum_of(results, "steps"); steps > 0.0) {
         content.figures.push_back(

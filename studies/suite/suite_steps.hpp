@@ -34,8 +34,8 @@ struct SuiteStep {
 [[nodiscard]] VerdictCounts count_verdicts(std::span<const SuiteStep> steps);
 
 /// Asks the gate and the safety oracle before each step of a walking machine. An operator
-/// attestation covers the largest truly level area (within 10 mm) around the start that the machine
-/// file allows. The attestation ends for good when the machine leaves that area.
+/// attestation covers the largest disc around the start that is truly level (within 10 mm), up to
+/// the limit of the machine file. It ends for good when the machine leaves that disc.
 class StepQuestions {
   public:
     /// `truth` and `machine` must outlive this object.

@@ -14,7 +14,7 @@ namespace surefoot::app {
 /// Results of a suite in its folder. cases.csv has one line for every finished case; bins.csv,
 /// steps.csv and verdicts.csv hold the details of the cases; pictures/ holds the worst case of each
 /// scene. add() writes the line of cases.csv last, so that an interrupted suite can continue.
-/// Details of a case without a line in cases.csv are dropped. The first line of each file contains
+/// Details of a case without a line in cases.csv are dropped. The first line of each CSV file has
 /// the version and a hash of the conditions. Not thread-safe.
 class SuiteTable {
   public:

@@ -82,11 +82,13 @@ void reject_dropped(const RobustFit& fit,
                     std::span<const std::size_t> kept,
                     std::vector<RejectedView>& rejected) {
     for (const DroppedView& view : fit.dropped) {
-        reject(rejected,
-               kept[static_cast<std::size_t>(view.view)],
-               fmt::format("rms {:.2f} px exceeds {:.2f} px, the limit from the other views",
-                           view.rms_px,
-                           view.limit_px));
+        reject(
+            rejected,
+            kept[static_cast<std::size_t>(view.view)],
+            fmt::format("rms {:.2f} px exceeds the limit of {:.2f} px: this view contradicts the "
+                        "others",
+                        view.rms_px,
+                        view.limit_px));
     }
 }
 

@@ -24,7 +24,7 @@ struct CalibrationOptions {
     /// Largest accepted standard deviation of the focal length, divided by the focal length.
     /// ASSUMPTION: 5 %; the relative depth error is as large.
     double most_focal_sigma = 0.05;
-    /// Smallest tilt between the two most different boards: parallel boards count as one board
+    /// Least accepted angle between the two least parallel boards: parallel boards count as one
     /// (Zhang 2000, section 3.4). ASSUMPTION: 5 deg; messages ask users to tilt by 20 deg and more.
     double least_tilt_deg = 5.0;
 };

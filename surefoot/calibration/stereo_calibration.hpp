@@ -12,8 +12,8 @@ namespace surefoot::calibration {
 
 struct StereoOptions {
     CalibrationOptions camera;
-    /// Largest joint rms of a pair / rms of its images alone (or the median of all pairs, if
-    /// larger). A larger rms is mostly not noise: the images differ in time, or the rig has bent.
+    /// Limit of a pair's joint rms, divided by the rms of its images alone (or by the median over
+    /// all pairs, if larger). Above it, the images mostly differ in time or the rig bent.
     double pair_factor = 1.5;
     int least_pairs = 3;
 };
@@ -44,11 +44,11 @@ struct StereoCalibration {
     /// Noise behind the covariance: `sigma_px`, or the scatter of the cameras between views if that
     /// is larger (`view_scatter.hpp`).
     double stated_sigma_px = 0.0;
-    /// Row difference of the corners after rectification, in pixels of `row_focal_px`, the mean
-    /// focal length of the two lenses. In this unit a corner error is as large as in the raw image.
-    /// The rectified images of `surefoot run` may be larger or smaller. The lens model sets their
-    /// size at the image corners, where perhaps no board was seen. In their pixels a better model
-    /// with larger images would seem worse.
+    /// Rms row difference of the corners after rectification, for images of focal length
+    /// `row_focal_px` (the mean of the two lenses). In this unit a corner error is as large as in
+    /// the raw image. The rectified images of `surefoot run` may be larger or smaller. The lens
+    /// model sets their size at the image corners, where perhaps no board was seen. In their pixels
+    /// a better model with larger images would seem worse.
     double row_rms_px = 0.0;
     double row_focal_px = 0.0;
     double rectified_focal_px = 0.0;  ///< focal length of images from `camera/rectifier`

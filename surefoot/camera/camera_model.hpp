@@ -35,7 +35,7 @@ struct Camera {
     CameraModel model;
     int width = 0;
     int height = 0;
-    /// Returns the first problem (NaN, size, focal length), or nullopt if the camera is valid.
+    /// Returns the first problem of the image size or of the lens, or nullopt if there is none.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

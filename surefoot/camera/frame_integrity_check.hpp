@@ -9,7 +9,7 @@
 
 namespace surefoot::camera {
 
-/// Detects frames that show nothing new: evidence for hazards H1 (frozen camera) and H2
+/// Detects repeated and torn frames: evidence for hazards H1 (frozen camera) and H2
 /// (half-updated frame). Use one check per source and pass its frames in the order of arrival.
 ///
 /// Hashes every image row and compares it with the rows of the last few frames. A ring of buffers
@@ -35,8 +35,8 @@ class FrameIntegrityCheck {
     static constexpr std::size_t kMemory = 8;
     /// A tear needs at least this many old rows and as many new rows: the height of a JPEG block.
     static constexpr int kMinTornRows = 8;
-    /// A row has structure if this many neighbouring pixels differ. With noise of one grey level,
-    /// two readings of a pixel agree in 28 % of cases, and of 16 pixels in 0.28^16 < 1e-8.
+    /// A row has structure if this many pixels differ from their left neighbour. With noise of one
+    /// grey level, two readings of one pixel are equal with probability 0.28, of 16 pixels < 1e-8.
     static constexpr int kMinChanges = 16;
 
   private:

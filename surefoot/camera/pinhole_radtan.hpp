@@ -8,9 +8,9 @@
 namespace surefoot::camera {
 
 /// Pinhole with radial-tangential distortion (Brown 1966, OpenCV's order k1 k2 p1 p2 k3):
-///   x = X/Z, y = Y/Z, r2 = x2 + y2, radial = 1 + k1 r2 + k2 r2^2 + k3 r2^3
-///   u = fx (x radial + 2 p1 x y + p2 (r2 + 2 x2)) + cx
-///   v = fy (y radial + p1 (r2 + 2 y2) + 2 p2 x y) + cy
+///   x = X/Z, y = Y/Z, r2 = x^2 + y^2, radial = 1 + k1 r2 + k2 r2^2 + k3 r2^3
+///   u = fx (x radial + 2 p1 x y + p2 (r2 + 2 x^2)) + cx
+///   v = fy (y radial + p1 (r2 + 2 y^2) + 2 p2 x y) + cy
 struct PinholeRadTan {
     double fx_px = 0.0;
     double fy_px = 0.0;

@@ -9,10 +9,10 @@ namespace surefoot::camera {
 
 /// Pinhole with OpenCV's rational distortion (CALIB_RATIONAL_MODEL, ROS "rational_polynomial"),
 /// coefficients in OpenCV's order k1 k2 p1 p2 k3 k4 k5 k6:
-///   x = X/Z, y = Y/Z, r2 = x2 + y2
+///   x = X/Z, y = Y/Z, r2 = x^2 + y^2
 ///   radial = (1 + k1 r2 + k2 r2^2 + k3 r2^3) / (1 + k4 r2 + k5 r2^2 + k6 r2^3)
-///   u = fx (x radial + 2 p1 x y + p2 (r2 + 2 x2)) + cx
-///   v = fy (y radial + p1 (r2 + 2 y2) + 2 p2 x y) + cy
+///   u = fx (x radial + 2 p1 x y + p2 (r2 + 2 x^2)) + cx
+///   v = fy (y radial + p1 (r2 + 2 y^2) + 2 p2 x y) + cy
 struct PinholeRational {
     double fx_px = 0.0;
     double fy_px = 0.0;

@@ -152,7 +152,7 @@ void RectificationConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1e5,
                    "focal length of rectified images; 0 = the smallest focal length that leaves no "
-                   "pixel black");
+                   "pixel black and shows at most max_view_deg");
     visitor.integer("rectified_width_px",
                     rectified_width_px,
                     0,

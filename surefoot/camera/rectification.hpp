@@ -11,7 +11,7 @@ namespace surefoot::camera {
 
 /// Parameters of the virtual pinhole cameras of rectified images.
 struct RectificationConfig {
-    double rectified_focal_px = 0.0;  ///< 0 = smallest focal length without black pixels
+    double rectified_focal_px = 0.0;  ///< 0 = smallest without black pixels, see max_view_deg
     int rectified_width_px = 0;       ///< 0 = width of the raw images
     int rectified_height_px = 0;
     /// Largest view angle across and down, if the focal length is chosen automatically. A wider
@@ -40,8 +40,8 @@ struct Rectification {
 };
 
 /// `rig` and `config` must have no problem(). A rectified rig stays unchanged unless `config` sets
-/// another focal length or size. Without a right camera only the distortion is removed: depth along
-/// z stays the same, and the rig gets `virtual_baseline_m`.
+/// another focal length or size. Without a right camera nothing is rotated: depth along z stays the
+/// same, and the rig gets `virtual_baseline_m`.
 [[nodiscard]] Rectification plan_rectification(const StereoRig& rig,
                                                const RectificationConfig& config,
                                                double virtual_baseline_m);

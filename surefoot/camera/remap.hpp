@@ -8,12 +8,12 @@
 
 namespace surefoot::camera {
 
-/// Source position of every pixel of an image, in fixed point of 1/32 px, for bilinear
-/// interpolation in integers:
+/// Source position of every pixel of an image: upper left neighbour (x, y), and the fractions fx
+/// and fy beyond it in units of 1/32 px. Interpolates bilinearly in integers:
 ///   h(row) = (32 - fx) * pixel(x, row) + fx * pixel(x + 1, row)
 ///   value  = ((32 - fy) * h(y) + fy * h(y + 1) + 512) >> 10
-/// The results equal cv::remap with INTER_LINEAR. All targets of the SIMD code and the reference
-/// give the same bytes.
+/// The results equal cv::remap with INTER_LINEAR. All instruction sets and `remap_reference` give
+/// the same bytes.
 class RemapTable {
   public:
     static constexpr int kUnits = 32;  ///< units per pixel

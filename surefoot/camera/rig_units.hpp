@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
-/// Checks whether a baseline can be in metres. A calibration offers no other check of its unit.
-/// StereoRig::problem tests every rig with `baseline_problem`. Every file that is read is also
-/// tested with `baseline_warning`.
+/// Checks of the units of a calibration: only the size of a number shows that its unit is wrong.
+/// StereoRig::problem and Camera::problem use the `_problem` functions. The readers of rig files
+/// also use the `_warning` functions.
 namespace surefoot::camera {
 
 inline constexpr double kMinBaseline_m = 1e-3;
-/// Largest valid baseline: above every camera of a walking machine, below all baselines in mm.
+/// Largest valid baseline. Cameras of walking machines have less; their baselines in mm are more.
 inline constexpr double kMaxBaseline_m = 5.0;
 
 /// Returns why a baseline cannot be used and its probable unit: "is it in mm (then 60.8 mm)?".
@@ -27,7 +27,7 @@ inline constexpr double kMaxBaseline_m = 5.0;
 [[nodiscard]] std::optional<std::string> focal_problem(double focal_px);
 
 /// Returns a warning if a focal length is so short for the image width [px] that its unit must be
-/// wrong: a field of view beyond 168 deg. Fisheyes have such views, pinholes do not.
+/// wrong: a field of view beyond 168 deg. Not for fisheye lenses, which can have such a view.
 [[nodiscard]] std::optional<std::string> focal_warning(double focal_px, int width_px);
 
 /// Returns an error if a sensor is farther than 10 m from base_link: its position is not in metres.

@@ -14,7 +14,7 @@ namespace surefoot {
 /// returns the smallest integer.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr bool fits_integer(Real value) noexcept {
-    // The limit is 2^digits: floating point holds it exactly, but not always the largest Int.
+    // The limit is 2^digits. A Real holds it exactly; it cannot always hold the largest Int.
     constexpr Real kEnd = static_cast<Real>(std::numeric_limits<Int>::max() / 2 + 1) * Real{2};
     constexpr Real kLow = std::is_signed_v<Int> ? -kEnd : Real{0};
     return value < kEnd && (value >= kLow || value > kLow - Real{1});

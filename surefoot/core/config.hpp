@@ -15,7 +15,7 @@ class ConfigVisitor {
 
     virtual void begin_group(const char* name) = 0;
     virtual void end_group() = 0;
-    /// `key` ends in its unit. A value must be finite and within [min, max].
+    /// `key` ends in the unit of the value, if any. A value must be finite and within [min, max].
     virtual void number(
         const char* key, double& value, double min, double max, const char* comment) = 0;
     virtual void integer(const char* key, int& value, int min, int max, const char* comment) = 0;

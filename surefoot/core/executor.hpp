@@ -5,9 +5,9 @@
 
 namespace surefoot {
 
-/// Runs independent pieces of work. The library starts no threads: the application creates an
-/// executor and passes it in. Results must not depend on which thread runs which index, so that
-/// every executor gives the same bytes. `Serial` is the reference.
+/// Runs independent pieces of work. Functions start no threads themselves: the application
+/// creates an executor and passes it in. Results must not depend on which thread runs which index,
+/// so that every executor gives the same bytes. `Serial` is the reference.
 class Executor {
   public:
     virtual ~Executor() = default;

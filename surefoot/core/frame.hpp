@@ -34,7 +34,7 @@ enum class HealthReason : std::uint8_t {
     large_residual,        ///< the rms reprojection error of the inliers exceeds its limit
     time_gap,              ///< too long since the previous frame, or stamps do not increase
     repeated_image,        ///< the image equals an earlier one: no observation at this instant
-    torn_image,            ///< the image combines parts of two images
+    torn_image,            ///< a part of the images comes from an earlier frame
     cameras_swapped,       ///< the left and right images are swapped
     imu_disagreement,      ///< the IMU contradicts the images; vision continues without it
     machine_disagreement,  ///< the motion that the machine reports contradicts the images
@@ -74,7 +74,7 @@ struct FrameStatus {
     int reconnected = 0;  ///< number of times the device was reopened
     /// Number of consecutive frames, up to this one, whose image is not new; 0 = new image.
     int repeated = 0;
-    bool torn = false;  ///< one part of the image is new, the rest comes from an earlier image
+    bool torn = false;  ///< one part of the images is new, the rest is of an earlier frame
 
     /// True if the frame counts as an observation at its time stamp.
     [[nodiscard]] bool is_new_and_whole() const noexcept { return repeated == 0 && !torn; }

@@ -23,7 +23,7 @@ struct GroundBox {
 struct BodyPart {
     GroundBox box;
     std::int32_t low_tenth_mm = 0;   ///< lower edge: lower obstacles pass below the part
-    std::int32_t high_tenth_mm = 0;  ///< upper edge: higher obstacles pass above the part
+    std::int32_t high_tenth_mm = 0;  ///< upper edge: obstacles that hang higher are no hindrance
 };
 
 /// The machine and its user without the feet.
@@ -76,13 +76,13 @@ struct GateLimits {
     std::int32_t patch_residual_tenth_mm = 0;   ///< limit of |residual| + sigma_factor * sigma
     std::int32_t patch_sigma_tenth_mm = 0;      ///< a patch with a larger sigma is not resolvable
     double sigma_factor = 3.4;                  ///< 3.4: error probability 3e-4 (one-sided, normal)
-    std::int32_t patch_independent_cells = 1;   ///< largest number of independent cells in a patch
+    std::int32_t patch_independent_cells = 1;   ///< largest number of independent errors in a patch
     std::int32_t cell_sigma_tenth_mm = 0;       ///< a cell with a larger sigma is not resolvable
     std::int32_t swing_clearance_tenth_mm = 0;  ///< highest obstacle below a swinging foot
     std::int32_t foot_margin_tenth_mm = 0;      ///< margin around the path of a foot
     std::int32_t drop_tenth_mm = 0;             ///< ground that lies lower by more is a drop
-    std::int32_t drop_band_tenth_mm = 0;        ///< width around a landing foot without a drop
-    std::uint8_t drop_evidence = 0;             ///< a cell with this evidence (1-255) is a drop
+    std::int32_t drop_band_tenth_mm = 0;        ///< no drop may lie this near to a landing foot
+    std::uint8_t drop_evidence = 0;             ///< smallest evidence (1-255) of a drop in a cell
     std::int32_t drift_tenth_mm = 0;            ///< limit of 1-sigma drift since a cell was seen
     /// Class stair: the share of a foot's length that its tread must carry, in thousandths, and the
     /// largest overhang of the foot beyond the nosing.
@@ -97,7 +97,7 @@ struct GateLimits {
 
 /// A walking machine for the step gate: an immutable value that is read from a machine file.
 struct Machine {
-    static constexpr int kMovementCodes = 27;  ///< 0 = joystick at rest, never a movement
+    static constexpr int kMovementCodes = 27;  ///< number of codes; code 0 = joystick at rest
 
     std::int32_t sole_depth_tenth_mm = 0;  ///< distance of the soles below base_link
     GroundBox left_foot;                   ///< the feet before and after a movement

@@ -14,7 +14,7 @@ namespace surefoot {
 }
 
 /// Calls `work(begin, end, piece)` once for each piece. The pieces do not depend on the number of
-/// threads. So sums per piece, added in order of the pieces, are the same for every number.
+/// threads. So a total of sums per piece, added in order of the pieces, is always the same.
 template <typename Work>
 void in_pieces(std::size_t count, std::size_t size, Executor& executor, const Work& work) {
     executor.parallel_for(static_cast<int>(pieces_of(count, size)), [&](int number) {

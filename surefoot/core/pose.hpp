@@ -23,7 +23,7 @@ struct Pose {
     [[nodiscard]] Pose inverse() const;
     [[nodiscard]] Eigen::Matrix3d R() const { return rotation.toRotationMatrix(); }
     [[nodiscard]] Eigen::Matrix4d matrix() const;
-    /// Returns the pose nearest to a 4x4 rigid matrix; normalises the rotation.
+    /// Returns the pose of a rigid 4x4 matrix; normalises the quaternion of its rotation.
     [[nodiscard]] static Pose from_matrix(const Eigen::Matrix4d& T_a_b);
     [[nodiscard]] bool all_finite() const;
 };

@@ -23,12 +23,12 @@ struct FusionCounts {
     std::int64_t gated_height = 0;      ///< points rejected: above or below the height limits
     std::int64_t gated_confidence = 0;  ///< rejected: disparity jump, grazing ray or likely outlier
     std::int64_t gated_density = 0;     ///< points rejected by radius outlier removal
-    std::int64_t gated_border = 0;      ///< points rejected: their cell extends beyond the image
+    std::int64_t gated_border = 0;      ///< points rejected: few in a cell partly outside the image
     std::int64_t outside = 0;           ///< points outside the map
     std::int64_t cells_measured = 0;    ///< cells that received a measurement
     std::int64_t cells_new = 0;         ///< measured cells that were unknown before
     std::int64_t cells_fused = 0;       ///< measured cells that passed the Mahalanobis gate
-    std::int64_t cells_inflated = 0;    ///< measured cells that disagreed: their variance increased
+    std::int64_t cells_inflated = 0;    ///< measured cells that disagreed with their known height
     std::int64_t cells_cleared = 0;     ///< cells cleared: rays pass through their old height
     FusionCounts& operator+=(const FusionCounts& other) noexcept;
 };

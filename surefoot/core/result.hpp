@@ -24,9 +24,9 @@ struct Error {
     std::string message;
 };
 
-/// A value, or the reason for its absence. The reason is a failure of the user's files,
-/// configuration or messages. SUREFOOT_ASSERT reports a broken invariant of the code. Events in the
-/// scene (blur, gaps) are enum values in a report.
+/// A value, or the reason for its absence: a problem of files, devices, configuration or messages,
+/// or a stop by the user. It is not for bugs (SUREFOOT_ASSERT reports them) and not for events in a
+/// recording, for example blur or a gap: these are enum values in a report.
 template <typename T>
 class [[nodiscard]] Result {
   public:

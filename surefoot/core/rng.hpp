@@ -5,8 +5,8 @@
 
 namespace surefoot {
 
-/// Seeded generator xoshiro256** (Blackman and Vigna 2018); splitmix64 fills its state. Callers
-/// pass it in. The numbers are the same on every platform; normal() also uses the log of libm.
+/// Seeded generator xoshiro256** (Blackman and Vigna 2018); splitmix64 fills its state. The numbers
+/// are the same on every platform, except those of normal(), which uses the log of libm.
 class Rng {
   public:
     explicit Rng(std::uint64_t seed) noexcept;

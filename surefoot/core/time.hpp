@@ -7,7 +7,7 @@
 
 namespace surefoot {
 
-/// Time is int64 nanoseconds everywhere; seconds appear only in files and printed text.
+/// Time stamps are int64 nanoseconds. Durations may be doubles in seconds (`_s`).
 inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 [[nodiscard]] constexpr double seconds_from_ns(std::int64_t time_ns) noexcept {

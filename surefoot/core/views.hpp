@@ -16,7 +16,7 @@ struct ImageView {
     T* data = nullptr;
     int width = 0;
     int height = 0;
-    int stride = 0;  ///< elements between the starts of two rows
+    int stride = 0;  ///< elements from the start of a row to that of the next
 
     [[nodiscard]] T* row(int v) const noexcept {
         return data + static_cast<std::ptrdiff_t>(v) * stride;

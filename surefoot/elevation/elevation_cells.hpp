@@ -73,14 +73,14 @@ class ElevationCells {
     void see_over(std::size_t cell, float line_z_m);
     /// Lower end of the remembered surface of a cell, see `CellObservation`.
     [[nodiscard]] float bottom_m(std::size_t cell) const noexcept { return bottom_m_.data()[cell]; }
-    /// Lowest object observed above the height of a cell, or the lower end of a surface that was
-    /// removed from the cell; NaN if there is no such object.
+    /// Height of the lowest object observed above a cell, or of the lower end of a surface that was
+    /// removed from the cell; NaN if there is neither.
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }
-    /// Writes the height of the highest visible surface of each cell. If two frames observed an
-    /// object that stands on known ground (a person), this is the lowest observed top of the
-    /// object. NaN = unknown cell. `out_m` takes the size of the layers.
+    /// Writes the surface of each cell: its height, or the lowest observed top of an object that
+    /// stands on known ground (a person) and that two frames observed. Leaves out objects that hang
+    /// over the ground (a table top). NaN = unknown cell. `out_m` takes the size of the layers.
     void surface(grid::Layer& out_m) const;
     /// Notes that a line of sight passed through the lowest object above a cell.
     void see_no_more_above(std::size_t cell);
@@ -136,8 +136,8 @@ class ElevationCells {
     grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: the object stands on the ground
     /// Known cell: lower end of its surface. Unknown cell: lowest line of sight over the cell.
     ElevationLayers::Layer bottom_m_;
-    /// If a share s of the observations shows a surface, the probability of n misses in a row is
-    /// (1 - s)^n. So the surface is gone after 1/s times as many frames as with s = 1.
+    /// If a share s of the observations shows a surface, the probability of n misses in a row is at
+    /// most exp(-s n). So it takes 1/s times as many frames as with s = 1 to remove the surface.
     grid::SlidingLayer<std::uint8_t> steady_;         ///< share s at the last agreement [1/16]
     grid::SlidingLayer<std::uint16_t> seen_through_;  ///< sum of `steady_` in contradicting frames
 };

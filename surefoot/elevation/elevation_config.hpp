@@ -22,7 +22,7 @@ struct ElevationConfig {
     double length_m = 6.0;
     /// 1-sigma error of the camera's roll and pitch in one frame: mounting, vibration, shutter.
     double camera_tilt_sigma_rad = 0.001;
-    /// A surface that is higher than this above a cell hangs over it: a table top, a lintel.
+    /// A surface higher than this above a cell is an overhead object: a table top, a lintel.
     double min_overhead_m = 0.3;
     FusionConfig fusion;
     ReductionConfig reduction;

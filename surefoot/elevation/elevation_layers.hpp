@@ -13,7 +13,7 @@ namespace surefoot::elevation {
 struct ElevationLayers {
     using Layer = grid::SlidingLayer<float>;
 
-    Layer height_m;                           ///< highest observed surface, in odom
+    Layer height_m;                           ///< surface height in odom, without objects above it
     Layer height_var_m2;                      ///< height variance relative to the present body
     grid::SlidingLayer<std::uint32_t> count;  ///< measurements fused since the height was set
     grid::SlidingLayer<std::int64_t>
@@ -22,9 +22,9 @@ struct ElevationLayers {
     Layer highest_m;           ///< robust highest point in the cell since the height was set
     Layer lowest_m;            ///< robust lowest point; far below `highest_m` for a wall or an edge
     Layer clearance_m;         ///< distance from height to lowest object above; NaN = no object
-    /// Unknown cells only: the ground is lower than this height. Lines of sight passed here in at
-    /// least two frames, because a single frame may hold a wrong match. The layer is evidence of
-    /// drops that the camera never observes directly. NaN = no line of sight passed.
+    /// Unknown cells only: the ground is lower than this height. Two observations must show this (a
+    /// line of sight that passed here, or ground below `min_height_m`), because one may be a wrong
+    /// match. The layer is evidence of drops. NaN = fewer than two observations.
     Layer free_above_m;
     /// Share of agreeing observations among about the last four of the cell; 1/2 right after the
     /// height was set.

@@ -73,10 +73,10 @@ class ElevationMap {
 
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return window_.geometry(); }
     [[nodiscard]] const ElevationLayers& layers() const noexcept { return cells_.layers(); }
-    /// Writes the highest surface of each cell in odom, for display and rating. The surface is
-    /// `height_m`, or the top of an object that two frames observed on known ground. `height_m`
-    /// then stays the ground until enough frames contradict it; `clearance_m` is the distance from
-    /// the ground to this top. NaN = unknown. Does not allocate if `out_m` has the size of the map.
+    /// Writes the surface of each cell in odom, for display and rating: `height_m`, or the top of
+    /// an object that stands on known ground and that two frames observed. `height_m` is still the
+    /// ground until enough frames contradict it; `clearance_m` is the distance from the ground to
+    /// this top. NaN = unknown. Does not allocate if `out_m` has the size of the map.
     void surface(grid::Layer& out_m) const { cells_.surface(out_m); }
     [[nodiscard]] const ElevationConfig& config() const noexcept { return config_; }
     [[nodiscard]] std::int64_t known_cells() const noexcept;

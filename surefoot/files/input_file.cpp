@@ -115,7 +115,8 @@ Result<std::string> InputFile::read_at(std::uint64_t offset, std::uint64_t count
         if (got < 0) return cannot_read(path_, errno);
         if (got == 0) {
             return input_error(fmt::format(
-                "{}: cannot read {} bytes from byte {} on: the file became shorter while open",
+                "{}: cannot read {} bytes from byte {} on: the file became shorter while open; "
+                "read it again when no program changes it",
                 path_,
                 bytes.size(),
                 offset));

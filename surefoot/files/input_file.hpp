@@ -10,13 +10,13 @@
 /// Checks the kind and size of a user's file, and opens it for reading.
 namespace surefoot::files {
 
-/// Largest size of a file per format [bytes]. A larger file is refused before it is read.
+/// Largest size of a file per format [bytes]. A file that states a larger size is not read.
 namespace limits {
 inline constexpr std::uint64_t kKeyBytes = 4096;              ///< tokens
 inline constexpr std::uint64_t kSettingsBytes = 4ULL << 20U;  ///< settings, rigs, machines, scenes
 inline constexpr std::uint64_t kTextBytes = 512ULL << 20U;    ///< lists, trajectories, IMU, reports
 inline constexpr std::uint64_t kImageBytes = 512ULL << 20U;   ///< images: PNG, JPEG, PGM, PPM, PFM
-inline constexpr std::uint64_t kMapBytes = 2ULL << 30U;       ///< grids, map regions, places
+inline constexpr std::uint64_t kMapBytes = 2ULL << 30U;       ///< grids, regions, place databases
 inline constexpr std::uint64_t kCloudBytes = 4ULL << 30U;     ///< clouds that are read whole
 inline constexpr std::uint64_t kStreamBytes = 1ULL << 42U;    ///< videos and clouds read in pieces
 }  // namespace limits

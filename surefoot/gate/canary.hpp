@@ -10,8 +10,8 @@
 namespace surefoot::gate {
 
 /// Canaries: inputs of decide() with known verdicts. Level ground must be OK for every movement of
-/// the machine. The other canaries use the longest movement (walking first). Each breaks a rule,
-/// ground rules under each foot. Canaries detect a gate that always gives the same verdict.
+/// the machine. Each other canary breaks one rule in the longest movement (walking before stairs).
+/// Rules of the ground are broken under each foot. Canaries detect a gate with a constant verdict.
 /// Judge all canaries before the gate is armed. Then judge one after the other while the gate runs.
 ///
 /// Holds one map of 0.9 MB, so allocate it on the heap. Allocates nothing after construction. One

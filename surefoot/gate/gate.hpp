@@ -15,10 +15,10 @@ enum class StanceHeight : std::uint8_t {
     given  ///< the caller gives it (joint sensors, arming); the cells must be known as well
 };
 
-/// Ground that an operator attested when arming. Unknown cells wholly inside count as flat ground
-/// at `height`. Measured cells keep their heights, except uncertain ones within 15 mm of `height`.
-/// So no measured obstacle above 15 mm is hidden. Valid only while base_link is inside. When
-/// base_link leaves, the caller discards the attestation for good. The caller logs and displays it.
+/// Ground that an operator attested. Unknown cells wholly inside count as flat ground at `height`,
+/// unless a ray proves them lower. Measured cells keep their heights, except uncertain cells within
+/// 15 mm of `height`. So no measured obstacle above 15 mm is hidden. Valid only while base_link is
+/// inside. The caller logs the attestation, and ends it for good when base_link leaves the area.
 struct AttestedArea {
     bool active = false;
     std::int64_t center_x_tenth_mm = 0;  ///< odom
@@ -63,9 +63,9 @@ struct GateHealth {
 };
 
 /// Returns the faults of a snapshot at `now_ns` that do not depend on the query: damage, age, a
-/// stamp in the future, gravity, pose, camera. decide() applies the same tests. Only this function
-/// ignores CameraState::leaning and tests that measured ground under the feet lies at the height of
-/// the soles (PLANE_INVALID). An empty set means that the snapshot can be used.
+/// stamp in the future, gravity, pose, camera. decide() applies these tests, too, but looks for
+/// damage only in the rows that it reads. Only this function ignores CameraState::leaning and tests
+/// that measured ground under the feet is at sole height (PLANE_INVALID). Empty = usable snapshot.
 [[nodiscard]] ReasonSet snapshot_faults(const Machine& machine,
                                         const grid::MapSnapshot& map,
                                         std::int64_t now_ns) noexcept;

@@ -15,8 +15,8 @@ namespace surefoot::gate {
 /// Source of the knowledge about a cell. Only `attested` and `measured` count as known.
 enum class Knowledge : std::uint8_t { outside, unknown, attested, measured };
 
-/// Returns the reason for which the gate refuses a cell without a known height. No other function
-/// turns unknown ground into a reason: every proof that meets such a cell uses this reason.
+/// Returns the reason for which the gate refuses a cell without a known height. All tests of
+/// decide() take the reason for such a cell from this function.
 [[nodiscard]] constexpr Reason reason_of_unknown(Knowledge knowledge) noexcept {
     return knowledge == Knowledge::outside ? Reason::outside_map : Reason::unknown_cells;
 }

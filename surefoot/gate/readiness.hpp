@@ -37,12 +37,12 @@ struct ReadinessLimits {
 /// WARMUP   -- healthy for 2 s and 20 frames --> READY; after 60 s --> FAULT
 /// READY    -- anything unhealthy --> DEGRADED
 /// DEGRADED -- healthy for 1 s and 10 frames --> READY; after 10 s --> FAULT
-/// any      -- a latched reason --> FAULT
+/// READY or DEGRADED -- perception restarted --> WARMUP
 /// FAULT    -- an operator re-arms --> WARMUP
+/// any      -- a latched reason --> FAULT; stop() --> STOPPING
 /// ```
-/// Inhibits at once and releases slowly: one bad sample ends READY. Only `rearm` ends FAULT, and
-/// then a full warm-up begins. Pure: times are arguments, nothing is allocated. Use it from one
-/// thread.
+/// One bad sample ends READY. Only an operator's re-arm releases a FAULT; a full warm-up follows.
+/// Pure: times are arguments, nothing is allocated. Use it from one thread.
 class Readiness {
   public:
     /// An invalid machine or invalid limits lead to FAULT / CONFIG.

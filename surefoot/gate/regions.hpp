@@ -20,7 +20,7 @@ struct Scene {
     std::int64_t stance_tenth_mm = 0;  ///< odom z of the ground under the present feet
     /// Odom z of the ground under each foot alone; empty if no cell there is known.
     std::array<std::optional<std::int64_t>, 2> foot_stance_tenth_mm{};
-    std::int64_t lift_tenth_mm = 0;  ///< height of the body at the target minus its height now
+    std::int64_t lift_tenth_mm = 0;  ///< rise of the body on its way to the target; 0 if it sinks
 };
 
 /// Makes a finding at a cell.
@@ -44,21 +44,21 @@ struct StanceHeights {
 /// touch the attested area.
 [[nodiscard]] ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept;
 
-/// Tests of the four kinds of region. Every cell must lie inside the map and be known (or
+/// Tests of the four kinds of region. Every cell must lie inside the map and be known (measured or
 /// attested). Its sigma must be at most `cell_sigma`, and its drift at most `drift`. If a cell
-/// keeps a height limit, but not by `sigma_factor` sigma, the reason is NOT_RESOLVABLE. A
-/// single cell may have a larger sigma if its eight neighbours pass: it may be a rejected wrong
-/// match.
+/// keeps a height limit, but not by `sigma_factor` sigma, the reason is NOT_RESOLVABLE. A single
+/// cell may have up to twice `cell_sigma` if its eight neighbours pass, because wrong matches that
+/// the map rejects raise the sigma of a cell.
 /// - check_stance: no cell under the present feet is a drop.
 void check_stance(const Scene& scene, Findings& findings) noexcept;
 /// - check_corridors: nothing in the path of a foot is higher above the stance than
-///   `swing_clearance`, or hangs so low that a lifted foot touches it.
+///   `swing_clearance` (on stairs plus one step up), or hangs so low that a lifted foot touches it.
 void check_corridors(const Scene& scene, Findings& findings) noexcept;
 /// - check_body: nothing in the path of a part of the body is higher than its lower edge, or hangs
 ///   lower than its top.
 void check_body(const Scene& scene, Findings& findings) noexcept;
 /// - check_bands: under the landing feet and within `drop_band` around them, no cell lies more than
-///   `drop` below the stance or has drop evidence.
+///   `drop` below the stance, and no cell low enough for a foot has drop evidence.
 void check_bands(const Scene& scene, Findings& findings) noexcept;
 
 }  // namespace surefoot::gate

@@ -17,8 +17,8 @@ struct Tread {
 
     bool known = false;              ///< every cell under the ankle is known
     std::int64_t rise_tenth_mm = 0;  ///< mean height of the ankle cells above the stance
-    /// Start of the first cell more than `drop` below the tread. `heel_edge` counts backward from
-    /// the middle of the foot. kNone: no such cell in the band.
+    /// End of the tread: the first cell more than `drop` lower begins, or a cell with drop evidence
+    /// ends. `heel_edge` counts backward from the middle of the foot. kNone: no end in the band.
     std::int64_t toe_edge = kNone;
     std::int64_t heel_edge = kNone;
     std::int64_t drift_tenth_mm = 0;  ///< largest drift of the cells of the band
@@ -31,15 +31,15 @@ using Treads = std::array<Tread, 2>;
 /// Rise of the body at the target above its present height; 0 for a movement down.
 [[nodiscard]] std::int64_t lift_of(const Treads& treads) noexcept;
 
-/// Tests the body at its lower height, for a movement down. At the target, everything above the
-/// treads must be lower than the lower edge of each part of the body.
+/// Tests the body at its lower height, for a movement down. At the target, no known cell below a
+/// part of the body may be higher than its lower edge. Heights count from the lower tread.
 void check_body_lowered(const Scene& scene, const Treads& treads, Findings& findings) noexcept;
 
 /// Tests the drop bands of landing feet on treads. Differs from check_bands: heights count from the
 /// tread. Nothing within the foot's margin and drift may be higher than `swing_clearance` above the
-/// tread. At one end of the foot, outside the ankle, the next tread may be lower by one step of the
-/// class (by `sigma_factor` sigma). Unknown ground does not count as a tread. Both feet must land
-/// at one height (within `patch_residual`).
+/// tread. At one end of the foot, outside the ankle, the ground may be lower by one step down of
+/// the class, if it keeps this limit by `sigma_factor` sigma. Unknown ground does not count as a
+/// tread. Both feet must land at one height (within `patch_residual`).
 void check_tread_bands(const Scene& scene, const Treads& treads, Findings& findings) noexcept;
 
 /// Tests the ground under one landing foot on a tread:
@@ -58,8 +58,8 @@ void check_tread(const Scene& scene,
                  const ReachableSurfaces& reachable,
                  Findings& findings) noexcept;
 
-/// Adds the surfaces that begin in the path of a foot within two cells of a `reachable` surface.
-/// They are at most one step of the class higher or lower, so a whole flight is not added.
+/// Adds the surfaces that begin in the path of a foot within two cells of a `reachable` surface and
+/// at most one step of the class higher or lower. It does so once, so no whole flight is added.
 void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept;
 
 }  // namespace surefoot::gate

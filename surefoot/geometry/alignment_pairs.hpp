@@ -37,7 +37,7 @@ struct Pair {
     bool counts = false;
 };
 
-/// Returns the spacing of a square lattice with `others` + 1 points in a disc of this radius.
+/// Returns the spacing of a square lattice with `others` + 1 points in a disc of radius `ball_m`.
 [[nodiscard]] double spacing_m(double ball_m, int others) noexcept;
 /// Returns the median over the pairs that count, or 0 if no pair counts.
 [[nodiscard]] double median_over(std::span<const Pair> pairs, double Pair::*value);

@@ -26,10 +26,10 @@ struct Lever {
 
 /// Kinds of evidence that fix a direction. Each kind fixes only directions that earlier kinds leave
 /// free. Surfaces err by their noise. Edges (both surfaces end between two points) err by the point
-/// spacing. Borders may be only the ends of a scan.
+/// spacing. A border may be the end of a scan and not of an object.
 enum class HeldBy : std::uint8_t { surfaces, edges, borders };
 inline constexpr std::size_t kHolds = 3;
-/// Returns the weight of a pair from `SurfacePairs` (surfaces, edges) or `BorderPairs`, or 0.
+/// Returns the weight of a pair as evidence of this kind. `borders` needs pairs of `BorderPairs`.
 [[nodiscard]] double weight_as(HeldBy kind, const Pair& pair) noexcept;
 
 /// Normal equations of the distances across the pairs of one kind of evidence.
@@ -63,12 +63,12 @@ struct AlignmentSigma {
     double place_m = 0.0;
     double turn_rad = 0.0;
 };
-/// Adds two kinds of error. First, the scatter: squared distances of the pairs (White 1980), times
-/// the correlation of pairs in one block (Liang and Zeger 1986). Neighbouring pairs share the
-/// noise of a normal. Second, the errors that more pairs do not reduce. Edges and borders lie up
-/// to half a point spacing off in each cloud, perhaps all in one direction (`cell_var_m2`,
-/// variance per fixed direction). A scan with another end shifts a border by up to a tenth of its
-/// balls' radius.
+/// Adds two kinds of error. First, the scatter of the pairs from their squared distances (White
+/// 1980). It is increased, because pairs in one cube of space share the noise of a normal (Liang
+/// and Zeger 1986). Second, the errors that more pairs do not reduce. Edges and borders lie up to
+/// half a point spacing off in each cloud, perhaps all in one direction; `cell_var_m2` is their
+/// variance per fixed direction. If the other scan ends elsewhere, a border is also shifted, by up
+/// to a tenth of the radius of its balls.
 [[nodiscard]] AlignmentSigma alignment_sigma(std::span<const Pair> surface,
                                              std::span<const Pair> border,
                                              const Lever& lever,

@@ -16,17 +16,17 @@ namespace surefoot::geometry {
 
 struct AlignmentConfig {
     int most_iterations = 100;
-    /// Largest number of moved points that are used. A larger cloud is thinned out evenly.
+    /// Largest number of moved points that are used. Of a larger cloud, evenly spaced indices.
     int most_points = 100000;
-    int normal_neighbours = 30;  ///< number of reference points for each normal
+    int normal_neighbours = 30;  ///< neighbours of a reference point that give its normal
     /// Pairs farther apart than this [m] do not count; 0 = all pairs count.
     double reach_m = 0.0;
     /// Share of pairs that count, nearest first, in (0, 1]. Use less than 1 for clouds that do not
     /// cover each other. A small share can also remove the few pairs that fix a weak direction.
     double kept_share = 1.0;
-    /// Whether common borders of both clouds fix the directions along all surfaces.
+    /// Whether common borders of both clouds fix directions that surfaces and edges leave free.
     bool borders = true;
-    double smallest_step_m = 1e-5;  ///< limit of the last shift of a converged alignment
+    double smallest_step_m = 1e-5;  ///< converged below this, or below a tenth of `sigma_m`
     double smallest_step_rad = 1e-5;
 };
 
@@ -44,7 +44,7 @@ struct AlignmentStep {
 enum class AlignmentOutcome : std::uint8_t {
     converged,
     no_pairs,        ///< no pair counts: all pairs are too far apart, or no surface was found
-    too_few_points,  ///< hardly more points than unknowns: an error would not be visible
+    too_few_points,  ///< paired points minus fixed directions below 30: sigma is unreliable
     no_overlap,      ///< fewer than 5 % of the moved points lie where the reference has points
     not_settled,     ///< the steps are still too large after `most_iterations`
 };
@@ -54,10 +54,10 @@ inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
 struct CloudAlignment {
     Pose T_reference_moved;
     AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
-    /// Numbers of the six directions (three shifts, three rotations) that surfaces do not fix.
-    /// Edges fix some: ends of surfaces between points, as at steps in a height map. Only borders
-    /// of the clouds fix others. Free directions keep the guess. On a bare floor the three numbers
-    /// add up to three.
+    /// How many of the six directions (three shifts, three rotations) are fixed by edges (ends of
+    /// surfaces between points, as at steps in a height map), are fixed only by borders of the
+    /// clouds, or stay free. Surfaces fix the rest. Free directions keep the guess. On a bare floor
+    /// the three numbers add up to three.
     int edge_directions = 0;
     int border_directions = 0;
     int free_directions = 0;

@@ -124,7 +124,7 @@ class KdTree {
 
     void cut(std::uint32_t node);
     void build(std::uint32_t node);
-    /// Returns the first point of a node. The nodes of a level share the points evenly.
+    /// Returns the index of the first point of node `number` of a level. Nodes share points evenly.
     [[nodiscard]] std::size_t first_of(int level, std::uint64_t number) const noexcept {
         return static_cast<std::size_t>((points_m_.size() * number) >> level);
     }

@@ -13,8 +13,8 @@ namespace surefoot::geometry {
 /// rotation.
 ///
 /// `rotations` are unit quaternions. `weights` (>= 0): one per rotation, or empty for equal
-/// weights. The result has w >= 0. Returns nullopt if no weight is positive or a value is negative
-/// or not finite. Also returns nullopt if the mean is not unique (two rotations half a turn apart).
+/// weights. The result has w >= 0. Returns nullopt if no weight is positive, a weight is negative,
+/// a value is not finite, or the mean is not unique (two rotations half a turn apart).
 [[nodiscard]] std::optional<Eigen::Quaterniond> quaternion_mean(
     std::span<const Eigen::Quaterniond> rotations, std::span<const double> weights = {});
 

@@ -24,9 +24,9 @@ template <typename T>
     return upper_median_in_place(values);
 }
 
-/// Returns the standard deviation about `middle`; a few outliers do not change it. It is 1.4826
-/// times the median distance, which is right for a normal distribution. Replaces `values` by their
-/// distances. `values` must not be empty.
+/// Estimates the standard deviation about `middle`; a few outliers hardly change the estimate. It
+/// is 1.4826 times the median distance, which is right for a normal distribution. Replaces `values`
+/// by their distances. `values` must not be empty.
 template <typename T>
 [[nodiscard]] double robust_sigma_about(T middle, std::vector<T>& values) {
     constexpr double kSigmaPerMedian = 1.4826;

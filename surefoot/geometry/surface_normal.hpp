@@ -16,7 +16,7 @@ namespace surefoot::geometry {
                                                             const Eigen::Vector3f& middle_m,
                                                             float radius_m);
 
-/// A surface through a few points.
+/// Normal and scatter of a surface near a point of a cloud.
 struct LocalSurface {
     Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit normal as from `surface_normal`
     float thickness_m = 0.0F;  ///< rms of the points across the surface: noise, or an edge

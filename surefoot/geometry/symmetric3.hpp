@@ -34,8 +34,8 @@ struct SmallestAxis {
     double middle = 0.0;                                   ///< the next larger eigenvalue
 };
 
-/// Returns the smallest eigenvector of a finite positive semi-definite matrix. Uses Jacobi only if
-/// it is not well separated. Direction error <= 1e-9 rad if the direction is unique.
+/// Returns the axis of the smallest eigenvalue of a finite positive semi-definite matrix. Uses
+/// Jacobi only if the next eigenvalue is near. Axis error <= 1e-9 rad if the axis is unique.
 [[nodiscard]] SmallestAxis smallest_axis(const Symmetric3& m) noexcept;
 
 }  // namespace surefoot::geometry

@@ -22,7 +22,7 @@ class ConvexArea {
   public:
     static constexpr int kMaxPoints = 32;
     static constexpr double kSliver_cells = 1e-5;
-    /// Largest distance from the grid's origin at which cells are counted without rounding.
+    /// Largest coordinate of an area. Up to here, rounding stays far below `kSliver_cells`.
     static constexpr double kMaxReach_cells = 1 << 20;
 
     /// The area is empty (no rows) without points, with more than kMaxPoints or with a negative

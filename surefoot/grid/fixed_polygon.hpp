@@ -82,8 +82,8 @@ struct FixedRun {
 
 /// Returns the cells of row `iy`, limited to `within`, whose open square overlaps the open polygon
 /// (separating axes; touching an edge does not count). They form one run, because the polygon is
-/// convex. Exact; costs two divisions per edge that is not parallel to the row. `relative` is
-/// relative to the grid's origin and has an area; row and cells lie within its bounds.
+/// convex. Exact; costs two divisions per edge that is not parallel to the row. `relative`: a
+/// polygon with an area, relative to the grid's origin; `iy` and `within` lie in its bounding box.
 [[nodiscard]] inline FixedRun overlapped_run(const FixedConvex& relative,
                                              std::int64_t side,
                                              std::int64_t iy,
@@ -135,7 +135,7 @@ class RowRuns {
     }
 
   private:
-    FixedConvex relative_;  ///< relative to the grid's origin
+    FixedConvex relative_;  ///< the polygon, relative to the grid's origin
     std::int64_t side_ = 1;
     FixedRun rows_;
     FixedRun columns_;

@@ -27,8 +27,8 @@ struct LatticeBox {
     friend bool operator==(const LatticeBox&, const LatticeBox&) = default;
 };
 
-/// Limits of a region: 102 m square at 25 mm (740 MB with all layers), and within 2^40 cells of the
-/// origin. There a double still resolves a thousandth of a cell.
+/// Limits of a region: at most the cells of 102 x 102 m at 25 mm (740 MB with all layers), within
+/// 2^40 cells of the origin. There a double still resolves a thousandth of a cell.
 inline constexpr int kMaxRegionSide = 1 << 14;
 inline constexpr std::int64_t kMaxRegionCells = std::int64_t{1} << 24;
 inline constexpr std::int64_t kMaxLatticeIndex = std::int64_t{1} << 40;

@@ -57,7 +57,7 @@ std::uint64_t add_whole(std::uint64_t hash, const Layer& layer) noexcept {
 std::uint64_t block_checksum(const MapSnapshot& s, std::size_t block) noexcept {
     constexpr std::size_t kCells = MapSnapshot::kBlockCells;
     static_assert(kCells % (4 * sizeof(std::uint64_t)) == 0,
-                  "a block must consist of whole words of the narrowest layer");
+                  "the narrowest layer must fill whole groups of four words in a block");
     std::uint64_t hash = step(kOffsetBasis, block);
     for_each_snapshot_layer(s, [&hash, first = block * kCells](const auto& layer) {
         hash = add_part(hash, layer, first, kCells);

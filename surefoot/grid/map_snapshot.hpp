@@ -20,7 +20,7 @@ enum class GravitySource : std::uint8_t { assumed = 0, plane = 1, imu = 2 };
 enum class SnapshotHealth : std::uint8_t { lost = 0, degraded = 1, ok = 2 };
 
 /// A line where the ground drops. Seen from the first end to the second, the lower ground lies on
-/// the right. Plain integers; elements from `edge_count` on are 0.
+/// the right. Plain integers. Edges of a snapshot from index `edge_count` on are 0.
 struct SnapshotEdge {
     std::int32_t from_x_tenth_mm = 0;  ///< relative to the snapshot's origin, like the next three
     std::int32_t from_y_tenth_mm = 0;

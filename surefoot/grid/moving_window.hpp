@@ -20,7 +20,7 @@ struct Shift {
 /// a ground position belongs to the same cell for every position of the window. The window moves by
 /// whole cells only.
 ///
-/// Starts centred on the origin. Frame: odom. The layers of the window are `SlidingLayer`s.
+/// At first it is centred on the origin of odom, to half a cell. Its layers are `SlidingLayer`s.
 class MovingWindow {
   public:
     /// `length_m` is rounded to whole cells, at least one.

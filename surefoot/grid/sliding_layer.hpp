@@ -13,13 +13,13 @@
 
 namespace surefoot::grid {
 
-/// A layer of a moving window: dense and in geometric order like an `Image`. A shift writes only
-/// the cells that come into view.
+/// A layer of a moving window: dense and in geometric order like an `Image`. Most shifts write
+/// only the cells that come into view.
 ///
 /// The rows are consecutive in a larger block of memory. Cell (ix + dx, iy + dy) lies dy rows and
 /// dx cells after cell (ix, iy), so a shift only moves the start by dy * nx + dx. The shift then
-/// overwrites the cells that come into view. At the end of the block (after a motion of half the
-/// window length) the cells that stay in view are copied to the middle.
+/// overwrites the cells that come into view. At the end of the block (at the earliest after a
+/// motion of half the window length) the cells that stay in view are copied to the middle.
 template <typename T>
 class SlidingLayer {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -48,7 +48,7 @@ class SlidingLayer {
     [[nodiscard]] ImageView<T> view() noexcept { return {data(), nx_, ny_, nx_}; }
     [[nodiscard]] ImageView<const T> view() const noexcept { return {data(), nx_, ny_, nx_}; }
 
-    /// Copies the layer for files and pictures. No operator: references would bind to the copy.
+    /// Copies the layer for files and pictures. No conversion: a reference would bind to the copy.
     [[nodiscard]] Image<T> copy() const {
         Image<T> image(nx_, ny_);
         std::memcpy(image.data(), data(), size() * sizeof(T));

@@ -53,7 +53,7 @@ struct SnapshotInput {
     std::uint64_t config_hash = 0;
     /// Neighbour cells belong to one surface if their heights differ by at most this step.
     double connect_step_m = 0.05;
-    /// An edge is a drop if ground within `drop_reach_m` behind it is lower by more than this step.
+    /// A cell lies above a drop if ground within `drop_reach_m` of it is lower by more than this.
     double drop_step_m = 0.05;
     double drop_reach_m = 0.5;
 };

@@ -43,9 +43,9 @@ struct Cloud {
                              const Eigen::Vector3d& sensor,
                              std::span<const std::size_t> chosen);
 
-/// Sets the band (half of `tolerance_m`, or more if few points are precise enough) and the
-/// tolerance of each point to a level plane. Removes the points that are too noisy for the band.
-/// Only for clouds with known noise.
+/// Sets the band: half of the config's `tolerance_m`, or 3 sigma of the most precise 10 % of the
+/// points if that is more. Sets the tolerance of each point to a level plane. Removes the points
+/// that are too noisy for the band. Only for clouds with known noise.
 void judge_noise(const GroundConfig& config, const Eigen::Vector3d& up, Cloud& cloud);
 
 }  // namespace surefoot::ground

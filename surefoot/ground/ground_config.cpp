@@ -65,8 +65,8 @@ void GroundConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    5.0,
                    "expected height of base_link above its ground: of several planes, the search "
-                   "takes the plane at this height and no landing below it. 0 = unknown: the "
-                   "search takes the lowest plane");
+                   "takes the one whose height fits best. 0 = unknown: it takes the lower plane, "
+                   "or of planes at most one high step (0.35 m) apart the nearer one");
     visitor.number("search_up_deg",
                    search_up_deg,
                    0.0,

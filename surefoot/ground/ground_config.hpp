@@ -7,7 +7,7 @@ namespace surefoot::ground {
 
 /// Limits for accepting a plane as the ground, and for accepting a calibration.
 struct GroundConfig {
-    double voxel_m = 0.05;           ///< side of cubes that keep one point: area counts, not pixels
+    double voxel_m = 0.05;           ///< side of cubes; the search uses one point of each cube
     int max_points = 4000;           ///< largest number of points, picked evenly
     double max_range_m = 8.0;        ///< largest range; stereo noise tilts farther ground
     double tolerance_m = 0.05;       ///< largest distance of an inlier, before the refit narrows it

@@ -18,7 +18,7 @@ enum class GroundReason : std::uint8_t {
     no_hint,      ///< the expected up direction is zero or not finite
     few_points,   ///< not enough points in range for any plane
     no_plane,     ///< no plane within the tilt limit at an allowed height below the sensor
-    few_inliers,  ///< inlier ratio below its limit
+    few_inliers,  ///< inlier ratio or image share below its limit
     small,        ///< area or extent below its limit, or tilt too uncertain
     not_lowest,   ///< many points lie more than a high step below the plane
     rough,        ///< inlier scatter above its limit, or many points just beyond the inliers
@@ -30,7 +30,7 @@ enum class GroundReason : std::uint8_t {
 struct GroundSighting {
     GroundObservation observation;  ///< in the frame of the points
     GroundReason reason = GroundReason::few_points;
-    double tilt_rad = 0.0;  ///< angle between the normal and `up_hint`
+    double tilt_rad = 0.0;  ///< angle between the normal and `up_hint` (search_ground: z)
     double area_m2 = 0.0;   ///< area of occupied squares (side: 2 voxels), seen along the normal
     /// Share of the examined pixels that lie on the plane; 0 unless search_ground() computes it.
     double image_share = 0.0;
@@ -38,12 +38,12 @@ struct GroundSighting {
     PlaneUncertainty uncertainty;
 };
 
-/// Finds the ground (RANSAC within the cone of allowed normals; Lange 2016, 4.3.1). Of all
-/// supported planes the lowest wins, even if a table top has more points. If the sensor's height is
-/// known (`expected_height_m`), the plane that fits it wins, for example a platform above a lower
-/// floor. Two planes may cross between their points (a ramp and the floor before it) or lie at most
-/// a high step apart (a kerb, a landing over treads). Of these the plane that begins nearer to the
-/// sensor wins.
+/// Finds the ground (RANSAC within the cone of allowed normals; Lange 2016, 4.3.1). If the height
+/// is known (`expected_height_m`), the plane that fits it best wins, for example a platform above a
+/// lower floor. Otherwise, of two planes more than a high step apart, the lower one wins, even if a
+/// table top has more points. Planes may cross between their points (a ramp and the floor before
+/// it) or lie at most a high step apart (a kerb, a landing over treads). Of such planes, the one
+/// that begins nearer to the sensor wins.
 ///
 /// `points`: in any frame; not finite = left out. `up_hint`: roughly up, in that frame.
 /// `sensor_origin`: in that frame; heights are distances from it. The same input and seed give the

@@ -16,10 +16,10 @@ namespace surefoot::ground {
 /// lies on a floor that fills a tenth of the image. Points near the best plane refine the plane
 /// (`refine_plane`) and are removed; then the search continues. A plane is the ground when
 /// * it fills `min_image_share` of the image and fixes its tilt (`max_search_sigma_deg`),
-/// * it is a surface: few points lie just beyond its roughness (`max_search_rms_m`),
-/// * nothing lies more than a high step below it. This excludes table tops, beds, seats and tilted
-///   backs, if the edge of the object is in view.
-/// Of several such planes the lowest wins. Of planes a step apart, the larger image share wins.
+/// * it is a surface: few points lie just beyond it, and it scatters by at most `max_search_rms_m`,
+/// * hardly any point lies more than a high step below it. This excludes table tops, beds, seats
+///   and tilted backs, if the edge of the object is in view.
+/// Of several such planes, the one with the largest share of the image wins.
 ///
 /// A table that fills the whole view cannot be distinguished from a floor. The same input and seed
 /// give the same bytes.

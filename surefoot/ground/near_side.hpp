@@ -11,9 +11,9 @@ namespace surefoot::ground {
 
 /// The part of a plane that is nearer to the sensor.
 struct NearSide {
-    geometry::Plane plane;  ///< fitted to the points of this part that lie near the whole plane
+    geometry::Plane plane;  ///< fitted to the points of this part that lie within the band
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit vector along the plane
-    double from_m = 0.0;                              ///< begin of the part along `axis`
+    double from_m = 0.0;                              ///< start of the part along `axis`
     double to_m = 0.0;
 
     [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {
@@ -22,11 +22,11 @@ struct NearSide {
     }
 };
 
-/// Detects a plane that was fitted across a step. Two levels 75 mm apart lie within 19 mm of a
-/// slope between them, hardly more than the noise of one pixel. More points agree with this slope
-/// than with either level, but all points together reveal the step. The function splits the points
-/// within `band_m` by a line across or along the view where two planes fit best. If two planes fit
-/// clearly better than one, it returns the plane on the side of the sensor (the origin).
+/// Detects a plane that was fitted across a step. Two equally long levels 75 mm apart scatter
+/// by 19 mm (rms) about a slope through both, hardly more than the noise of one pixel. More points
+/// agree with this slope than with either level, but all points together reveal the step. A line
+/// across or along the view splits the points within `band_m` of the plane where two planes fit
+/// best. If they fit clearly better than one, the function returns the side of the sensor (origin).
 ///
 /// Points and sigmas as for `refine_plane`. Returns nothing if one plane is enough.
 [[nodiscard]] std::optional<NearSide> near_side(std::span<const Eigen::Vector3d> points,

@@ -24,7 +24,7 @@ struct FramePoints {
     Eigen::Matrix3d calibration_covariance = Eigen::Matrix3d::Zero();
 };
 
-/// Replaces `seen` by the pixels of a grid with spacing `step_px`. Uses only pixels with known
+/// Replaces `seen` by the points of every `step_px`-th pixel and row, if the pixel has a known
 /// disparity and sigma and an outlier probability of at most `max_outlier_probability`.
 void sample_points(const camera::RectifiedRig& rig,
                    const DepthImage& depth,

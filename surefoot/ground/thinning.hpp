@@ -8,9 +8,9 @@
 
 namespace surefoot::ground {
 
-/// Returns the first index in every cube of side `voxel_m`, ascending. Leaves out points that are
-/// not finite or farther than `max_range_m` from `sensor_origin`. Above `max_points`, only every
-/// k-th index is kept. The points are then spread by surface, not by pixel.
+/// Returns the index of the first point in every cube of side `voxel_m`, ascending. Ignores points
+/// that are not finite or farther than `max_range_m` from `sensor_origin`. Above `max_points`, only
+/// every k-th index is kept. The points are then spread by surface, not by pixel.
 [[nodiscard]] std::vector<std::size_t> thin(std::span<const Eigen::Vector3d> points,
                                             const Eigen::Vector3d& sensor_origin,
                                             double max_range_m,

@@ -30,8 +30,8 @@ using files::read_file;
 /// Creates a folder and its parents; an existing folder is not an error.
 [[nodiscard]] Status make_folder(const std::string& path);
 
-/// Lists the names (without folder) of regular files in a folder whose lower-case extension is one
-/// of `extensions` (".png"), in natural order. Hidden files are left out.
+/// Lists the names (without folder) of the regular files in a folder, in natural order. The
+/// extension, in lower case, is one of `extensions` (".png"). Hidden files are left out.
 [[nodiscard]] Result<std::vector<std::string>> list_files(
     const std::string& folder, const std::vector<std::string>& extensions);
 
@@ -46,8 +46,8 @@ using files::read_file;
 /// Returns the lower-case extension with its dot; empty if there is none.
 [[nodiscard]] std::string extension_of(const std::string& path);
 
-/// A text file that grows line by line. `append` hands the line to the system before it returns. A
-/// line that does not fit on the disk is removed again: the file always ends in a whole line.
+/// A text file that grows line by line. `append` hands the line to the system before it returns. If
+/// the disk is full, `append` removes the written part: the file still ends in a whole line.
 class AppendFile {
   public:
     /// Creates an empty file; an existing file is replaced.

@@ -12,7 +12,7 @@
 /// Reads and writes little-endian float32 values (".f32"), the format of the conformance vectors.
 namespace surefoot::io {
 
-/// Fails if the size is not a whole number of floats, or is not `count`, if `count` is given.
+/// Fails if the bytes are not a whole number of floats, or not `count` floats (if it is given).
 [[nodiscard]] Result<std::vector<float>> parse_floats(std::string_view bytes,
                                                       const std::string& file,
                                                       std::optional<std::size_t> count = {});

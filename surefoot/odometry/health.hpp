@@ -21,7 +21,7 @@ struct HealthEvidence {
     double gap_s = 0.0;        ///< time since the previous frame
     double usual_gap_s = 0.0;  ///< time between the two previous frames; 0 = unknown
     bool stamp_grows = true;
-    bool was_unsure = false;       ///< no pose in the previous frame, or too little depth recently
+    bool was_unsure = false;       ///< the previous frame was LOST, or too little depth recently
     bool torn_lately = false;      ///< an image shortly before this one was torn
     double sharpness_ratio = 1.0;  ///< sharpness of this frame / that of the last good frame
     double translation_sigma_m = 0.0;  ///< one sigma in the weakest direction
@@ -39,13 +39,13 @@ struct HealthVerdict {
 };
 
 /// Decides the health of a frame. LOST: swapped cameras, no pose, too few points, a pose beyond the
-/// machine's speed, points that leave a direction uncertain, or no measured depth although the
-/// right image has content. DEGRADED: a second motion, few points, a weak direction, blur, a large
-/// residual, a time gap, or an IMU or machine that disagrees. Also DEGRADED: the first frame after
-/// a LOST one and half a second after too little depth (points found again may contradict the poses
-/// in between), and one second after a torn image (more may follow). The reason names the cause if
-/// known: first a time gap, then blur, then the points. An IMU gap costs no accuracy while enough
-/// points are seen: health OK, reason imu_gap.
+/// machine's speed, points that leave a direction uncertain, or `ok_inliers` points without any
+/// measured depth although the right image has content. DEGRADED: a second motion, few points,
+/// little measured depth, a weak direction, blur, a large residual, a time gap, or an IMU or
+/// machine that disagrees. Also DEGRADED: the first frame after a LOST one and half a second after
+/// too little depth (points found again may contradict the poses in between), and one second after
+/// a torn image (more may follow). The reason names the cause if known: first a time gap, then
+/// blur, then the points. An IMU gap alone leaves the health OK, with reason imu_gap.
 [[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);
 
 /// Covariance of the unseen motion from `before_s` to `after_s` seconds after tracking was lost.

@@ -27,12 +27,13 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                    0.05,
                    3.0,
                    "one sigma of the image position of an aligned point, per camera and axis; a "
-                   "larger measured noise replaces this value");
-    visitor.integer("window_keyframes",
-                    window_keyframes,
-                    3,
-                    30,
-                    "number of newest keyframes that the bundle adjustment includes");
+                   "clearly larger measured noise replaces it, up to three times this value");
+    visitor.integer(
+        "window_keyframes",
+        window_keyframes,
+        3,
+        30,
+        "number of newest keyframes in the bundle adjustment; their oldest stays fixed");
     visitor.number(
         "still_parallax_px",
         still_parallax_px,

@@ -53,7 +53,7 @@ Result<Settings> load_settings(const SettingsRequest& request, io::Notes* notes)
         return usage_error(
             "camera.rectified_focal_px, .rectified_width_px, .rectified_height_px and "
             ".max_view_deg cannot be set with sim.sensor = analytic, because this "
-            "sensor computes rectified depth");
+            "sensor computes rectified depth; remove these settings or choose another sim.sensor");
     }
     return settings;
 }

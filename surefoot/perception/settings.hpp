@@ -37,8 +37,8 @@ struct SettingsRequest {
     std::vector<std::string> overrides;  ///< "elevation.resolution_m=0.02"
 };
 
-/// Loads and checks the settings. Each problem is a usage error with file, line, key and limit.
-/// `notes`, if given, receives a sentence for each key that has a new name.
+/// Loads and checks the settings. Each problem is a usage error; an error of the file also has the
+/// line, key and limit. `notes`, if given, receives a sentence for each key that has a new name.
 [[nodiscard]] Result<Settings> load_settings(const SettingsRequest& request = {},
                                              io::Notes* notes = nullptr);
 /// Applies the file and the overrides of `request` to a configuration object.

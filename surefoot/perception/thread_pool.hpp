@@ -38,7 +38,7 @@ class ThreadPool final : public Executor {
     const std::function<void(int)>* work_ = nullptr;  ///< null while no call runs
     int count_ = 0;
     int next_ = 0;
-    // Written with the mutex held. Readers do not hold the mutex.
+    // Written with the mutex held. Some readers do not hold the mutex.
     std::atomic<int> running_ = 0;
     std::atomic<int> calls_ = 0;
     bool stopping_ = false;

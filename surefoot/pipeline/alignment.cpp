@@ -118,7 +118,7 @@ Direction find_up(const AlignmentConfig& config,
     } else {
         alignment.reason = fmt::format(
             "tilt assumed from mount.pitch_deg = {:.1f}, so the gate answers ERROR on"
-            " this map: no accelerometer at rest; {}",
+            " this map: no accelerometer measured gravity at rest; {}",
             config.pitch_deg,
             without_plane(ground.reason, look));
     }

@@ -30,7 +30,7 @@ struct AlignmentConfig {
     double max_sway_deg = 7.0;
     double max_lean_still_s = 4.0;
     double max_lean_walking_s = 12.0;
-    double wait_for_exposure_s = 60.0;  ///< longest wait; a warm-up took 10-30 s (Lange 2016)
+    double wait_for_exposure_s = 60.0;  ///< longest wait; a camera needed 10-30 s (Lange 2016)
     double wait_for_ground_s = 10.0;    ///< longest search for the vertical (start.hpp)
     double wait_for_search_s = 3.0;     ///< longest search with unknown mounting (start.hpp)
     void describe(ConfigVisitor& visitor);
@@ -62,8 +62,8 @@ struct GroundView {
 [[nodiscard]] Eigen::Vector3d assumed_up(const AlignmentConfig& config);
 
 /// Combines the averaged ground plane and the accelerometer by their covariances (gravity.hpp). The
-/// source of gravity is `imu` if there is an accelerometer, else `plane`, else `assumed`. With
-/// `plane`, `tilt_sigma_rad` includes the slope of the floor.
+/// source of gravity is `imu` with `up_imu`, else `plane` with an accepted ground plane, else
+/// `assumed`. With `plane`, `tilt_sigma_rad` includes the slope of the floor.
 ///
 /// Vision alone cannot detect a wrong baseline, because it scales all lengths alike. If the height
 /// of base_link over its ground is known (`expected_height_m`; 0 = unknown) and the measured height

@@ -19,8 +19,8 @@ enum class ExposureState : std::uint8_t {
 inline constexpr int kSaturated_dn = 250;
 /// Black level and read noise of 8-bit cameras lie below this value.
 inline constexpr int kBlack_dn = 10;
-/// ASSUMPTION: a quarter of an image may be saturated. Half an image was enough for ground planes,
-/// two thirds for the corners of the online rig self-calibration (docs/lab/ground.md).
+/// ASSUMPTION: a quarter of an image may be saturated. Ground planes were right with half of the
+/// image well exposed, the online rig self-calibration with two thirds (docs/lab/ground.md).
 inline constexpr double kMaxSaturatedShare = 0.25;
 inline constexpr double kMaxBlackShare = 0.75;
 

@@ -23,12 +23,12 @@ struct Direction {
 /// Prior knowledge about the direction of gravity before a start.
 ///
 /// The ground plane measures the floor, not gravity; the difference is the slope of the floor. Most
-/// floors are built level, some are ramps or fall to one side. The slope about each horizontal axis
-/// is therefore drawn from one of two normal distributions.
+/// floors are built level, some are ramps or fall to one side. So the model draws the slope about
+/// each horizontal axis from one of two normal distributions.
 struct GravityConfig {
     /// One sigma of the constant error of the accelerometer along each axis, including the error of
-    /// its alignment with the camera. Calibrated MEMS parts keep 0.02 m/s^2. By their data sheets,
-    /// other parts err by 0.2 to 0.6 m/s^2.
+    /// its alignment with the camera. Calibrated MEMS parts stay within 0.02 m/s^2. By their data
+    /// sheets, other parts err by 0.2 to 0.6 m/s^2.
     double accel_bias_m_s2 = 0.02;
     /// One sigma of the slope of floors that are built level: DIN 18202 allows 4 mm over 1 m.
     /// ASSUMPTION.

@@ -30,9 +30,9 @@ class MountMonitor {
     void add(const MotionEstimate& motion, const GroundObservation& ground_body);
 
     [[nodiscard]] bool moved() const noexcept { return moved_; }
-    /// True if base_link leaned in the last judged frame: in mid-step, or the camera was knocked. A
-    /// knock of over `max_lean_before_step_deg` shows in the next frame, and lasts until
-    /// `moved` reports it. A step ends upright, and then the lean ends.
+    /// True if base_link leaned in the last judged frame by over `max_lean_before_step_deg`: in
+    /// mid-step, or because the camera was knocked. A step ends upright, and then the lean ends.
+    /// The lean of a knock stays, also after `moved` has reported it.
     [[nodiscard]] bool leans() const noexcept { return leans_; }
     /// Lean of base_link [rad] in the last judged frame; 0 if the two references disagree.
     [[nodiscard]] double lean_rad() const noexcept { return lean_rad_; }

@@ -33,11 +33,11 @@
 
 namespace surefoot::pipeline {
 
-/// Clock for stage times [ns]; the library has no clock of its own. Null leaves the times at 0.
+/// Clock for stage times [ns]; the pipeline has no clock of its own. Null leaves the times at 0.
 using Clock = std::int64_t (*)();
 
-/// Turns stereo frames into a rated map of the ground; one frame is one call of `process`. Frames
-/// that bring depth or motion (`known_depth`, on a rectified rig, `known_motion`) keep them. Frames
+/// Turns stereo frames into a rated map of the ground; one frame is one call of `process`. If a
+/// frame has `known_depth` (for the rectified rig) or `known_motion`, it is not measured. Frames
 /// with a repeated or torn image (camera::FrameIntegrityCheck) are only reported: the odometry
 /// would read a frozen picture as a machine at rest. Then the snapshot keeps the stamps of the last
 /// good frame, so that the gate notices the age. After several bad frames in a row, the snapshot
@@ -61,7 +61,7 @@ class Pipeline {
     static constexpr std::size_t kAlignmentFrames = 10;
 
     /// Corrects the right camera's calibration by the rows of the first frames, finds gravity and
-    /// the ground in them and places odom (alignment.hpp). `rig()` is final afterwards.
+    /// the ground in them and places odom (alignment.hpp). `rig()` is final after the last `align`.
     /// `T_odom_first_body`: pose of the first frame, if the source knows it; only this pose then
     /// places odom.
     const Alignment& align(std::span<const StereoFrame> first_frames,
@@ -84,8 +84,8 @@ class Pipeline {
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return rating_;
     }
-    /// Returns the surface to rate and to show: the highest surface of each cell in odom, including
-    /// a person who stepped onto mapped ground (`ElevationMap::surface`). Allocates.
+    /// Returns the surface of each cell in odom, to rate and to show: its height, or the top of a
+    /// person who stepped onto mapped ground (`ElevationMap::surface`). Allocates.
     [[nodiscard]] grid::Layer surface_m() const;
     /// Returns edges, drops and stairs, tracked over time, as of the last full frame.
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept { return features_; }
@@ -109,7 +109,7 @@ class Pipeline {
     /// Returns the present footholds. Allocates and takes milliseconds: not for every frame.
     [[nodiscard]] Image<traversability::Foothold> footholds() const;
 
-    /// Writes the gate's input, as of the last frame. After an error, `out` is not intact.
+    /// Writes the gate's input, as of the last frame. After an error, do not use `out`.
     [[nodiscard]] Status snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) const;
 
   private:
@@ -124,7 +124,7 @@ class Pipeline {
     bool see_with(const camera::StereoRig& rig);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
-    /// Returns the frame's own motion, or the odometry's. `T_odom_first`: first pose of base_link.
+    /// Returns the frame's `known_motion`, moved to the start `T_odom_first`, or the odometry's.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
                                        const Pose& T_odom_first);

@@ -45,7 +45,7 @@ class TiltDriftCorrection {
     void see(const GroundObservation& ground_body);
 
     /// Returns the mean tilt of the ground in odom along x and y [rad], for small angles. Empty
-    /// until the ground was observed for `average_s`, and if it cannot show drift.
+    /// before `average_s` of observed ground, or if too little of it is level (see `start_at` too).
     [[nodiscard]] std::optional<Eigen::Vector2d> lean() const;
 
   private:

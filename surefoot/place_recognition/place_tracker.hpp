@@ -21,9 +21,9 @@ struct TrackerConfig {
     double keyframe_deg = 12.0;
     /// This many last keyframes are not compared, because they show the same as the present one.
     int recent_keyframes = 10;
-    /// Number of successive keyframes that must agree on T_map_odom before it is accepted.
+    /// Number of recognised keyframes that must agree on T_map_odom before it is accepted.
     int confirmations = 2;
-    int max_misses = 1;  ///< largest number of successive keyframes without a recognition
+    int max_misses = 1;  ///< more keyframes in a row without a recognition discard pending ones
     double agree_m = 0.15;
     double agree_deg = 2.5;
     /// Error that is added to a recognition's covariance: landmarks of one view share their errors.
@@ -37,7 +37,7 @@ struct Sighting {
     std::int64_t time_ns = 0;
     Refusal refusal = Refusal::none;
     int keyframe = -1;   ///< number of the best stored keyframe; -1 = none
-    bool saved = false;  ///< true: `keyframe` is of the saved place; false: of this run
+    bool saved = false;  ///< true: `keyframe` is of the saved place; false: of this run or none
     Comparison comparison;
     std::optional<Pose> T_map_odom;  ///< set if the refusal is none
 };
@@ -47,7 +47,7 @@ struct Sighting {
 ///
 /// Without a saved place, the map is this run's odom: T_map_odom is the identity until the run
 /// returns to a place that it has seen. With a saved place, T_map_odom is unknown until
-/// `confirmations` successive keyframes recognise the place.
+/// `confirmations` keyframes recognise the place and agree, with few misses in between.
 ///
 /// Call `follow` with the motion of every frame, then `see` with every frame that has depth. Not
 /// thread-safe. The same calls give the same results, bit by bit on one machine.
@@ -81,7 +81,7 @@ class PlaceTracker {
         Matrix6 covariance = Matrix6::Zero();
         Pose T_map_odom;
     };
-    /// A keyframe of this run that is in the memory.
+    /// A keyframe of this run that `memory_` stores.
     struct Own {
         int keyframe = 0;
         int node = 0;
@@ -99,7 +99,7 @@ class PlaceTracker {
 
     TrackerConfig config_;
     PlaceMemory memory_;
-    int saved_ = 0;  ///< number of saved keyframes, which come first in the memory
+    int saved_ = 0;  ///< number of saved keyframes, which come first in `memory_`
     std::vector<Own> own_;
     PoseGraph graph_;
     bool located_ = false;

@@ -16,7 +16,7 @@ enum class Refusal : std::uint8_t {
     imprecise,     ///< the inliers do not determine the pose well enough
     tilted,        ///< the up directions of the view and the keyframe differ
     contradicted,  ///< parts of the image show something other than the stored place
-    floor_only,    ///< the inliers lie on one level surface; a printed floor may repeat
+    floor_only,    ///< too few features off the floor agree; a printed floor may repeat
     ambiguous,     ///< another place explains the view more than half as well
     unconfirmed,   ///< accepted so far, but later views have not confirmed it yet
     inconsistent,  ///< contradicts odometry or earlier recognitions

@@ -56,8 +56,8 @@ struct Comparison {
 };
 
 /// Computes the pose of a view relative to a keyframe and whether it is credible. Steps: match
-/// descriptors, find the pose by consensus, then search every feature of either view where the
-/// other view should show it. This rejects look-alikes: a door that exists in every corridor
+/// descriptors, find the pose by consensus, then project the features of each view into the
+/// other view and search them there. This rejects look-alikes: a door that exists in every corridor
 /// agrees, but the floor before it does not. A floor alone proves nothing, because printed and
 /// woven patterns repeat: objects on the floor must agree as well. `up_candidate`, `up_query`: unit
 /// vectors in each view's base_link.

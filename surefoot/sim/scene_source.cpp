@@ -172,7 +172,8 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
         "depth_camera",
         depth_camera,
         kDepthCameraNames,
-        "model of the depth camera, which defines its lens; depth_errors sets its errors");
+        "model of the depth camera; sets the defaults of depth_errors, and the lens if the rig has "
+        "a right camera");
     if (depth_camera != depth_camera_before)
         depth_errors = depth_camera_preset(depth_camera).config;
     visitor.group("imaging", camera.imaging);

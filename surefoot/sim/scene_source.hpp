@@ -95,7 +95,7 @@ class SceneSource final : public camera::FrameSource {
     /// Fills in the images of a frame whose stamp is set; returns false if there are none.
     using KnownImages = std::function<bool(StereoFrame& frame)>;
     /// Skips rendering of frames whose images `known` has from a run with the same options. Returns
-    /// false and renders all frames for the analytic sensor, automatic exposure, and faults that
+    /// false and skips no frame if the sensor is analytic, the exposure automatic, or a fault may
     /// show older images. After a skipped frame `last_shot` and `last_depth_m` still belong to the
     /// last rendered frame.
     bool use_known_images(KnownImages known);
@@ -106,7 +106,7 @@ class SceneSource final : public camera::FrameSource {
     [[nodiscard]] const std::shared_ptr<CommandedMotion>& commanded() const noexcept {
         return commanded_;
     }
-    /// Motion time that no frame has exposed yet: half a frame after the last frame.
+    /// Motion time that no frame has exposed yet: last frame plus half a period; 0 without a frame.
     [[nodiscard]] double now_s() const noexcept;
     /// Joint angles of a REX at the time of a frame; no value for the other motion models. For
     /// forgotten steps of a commanded motion see CommandedMotion::forget_before.
@@ -180,8 +180,8 @@ class SceneSource final : public camera::FrameSource {
 };
 
 /// Returns a usage error for an unknown scene or rig preset, an unusable rig, a number out of
-/// range, and image faults for a sensor without images. `executor` renders rows in parallel and
-/// must outlive the source; without an executor the calling thread renders.
+/// range, and faults other than dropped frames with the analytic sensor. `executor` renders rows in
+/// parallel and must outlive the source; without an executor the calling thread renders.
 [[nodiscard]] Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options,
                                                               Executor* executor = nullptr);
 

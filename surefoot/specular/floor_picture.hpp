@@ -24,7 +24,7 @@ class FloorPicture {
     /// Moves the window if the body has moved too far inside it. The window lies ahead of the body.
     void follow(const Pose& T_odom_body);
     /// Adds the part of a rectified left image that shows the plane z = `floor_z_m` (odom). Each
-    /// frame uses a quarter of the rows. Pixels whose disparity contradicts the plane do not count.
+    /// frame fills a quarter of the picture's rows. Pixels off the plane do not count.
     void add(const camera::RectifiedRig& rig,
              const Pose& T_odom_body,
              ImageView<const std::uint8_t> left,

@@ -65,8 +65,8 @@ class MirrorPatch {
 };
 
 /// Computes the detail of a brightness image (NaN = unknown; a row is a line). Divides the
-/// Laplacian by its mean strength in the tile and in the whole image. Limits the result, and
-/// subtracts the means along and across the lines. `work`: scratch memory of the same size.
+/// Laplacian by the mean of its strengths in the tile (16 x 16 cells) and in the whole image. Then
+/// limits outliers and removes the means along and across the lines. `work`: scratch, same size.
 void take_detail(const Image<float>& grey, Image<float>& work, PatchDetail& out);
 
 }  // namespace surefoot::specular

@@ -33,8 +33,8 @@ struct SuspectedPane {
     [[nodiscard]] Eigen::Vector2d left() const { return {-normal.y(), normal.x()}; }
 };
 
-/// Detects mirrors and panes of glass that stand on the floor, frame by frame. Keeps them as long
-/// as the floor picture shows them.
+/// Detects mirrors and panes of glass that stand on the floor, frame by frame. Removes a pane after
+/// `forget_observations` low scores in a row, or if its plane is over 4 m from the body.
 ///
 /// Each frame searches a few of 180 directions. All directions take turns; directions ahead get
 /// more turns. Each frame also checks one known pane again.
@@ -93,8 +93,8 @@ class MirrorWatch {
 [[nodiscard]] std::optional<double> level_floor_z_m(const GroundObservation& ground_body,
                                                     const Pose& T_odom_body);
 
-/// Sets the cells at the panes and behind the panes to 1. The body is in front of all panes. Other
-/// cells stay unchanged. `hidden` has the size of `geometry`.
+/// Sets the cells at and behind the panes to 1. The front of a pane is the side of its detection.
+/// Other cells stay unchanged. `hidden` has the size of `geometry`.
 void hide_behind(std::span<const SuspectedPane> panes,
                  const SpecularConfig& config,
                  const grid::GridGeometry& geometry,

@@ -17,13 +17,13 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
                    range_m,
                    1.0,
                    5.0,
-                   "largest distance from the camera at which floor enters the floor picture");
+                   "largest depth along the optical axis at which floor enters the floor picture");
     visitor.number("mirror_correlation",
                    mirror_correlation,
                    0.1,
                    1.0,
                    "smallest correlation between the floor and its image in a mirror; a line with "
-                   "less is not a mirror");
+                   "less can only be glass");
     visitor.number(
         "mirror_score",
         mirror_score,
@@ -63,13 +63,15 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
         margin_m,
         0.0,
         0.5,
-        "distance before a suspected mirror or pane within which map cells become unknown");
+        "map cells up to this distance before a suspected mirror or pane become unknown, like the "
+        "cells behind it");
     visitor.number(
         "side_margin_m",
         side_margin_m,
         0.0,
         1.0,
-        "distance beside a suspected mirror or pane within which map cells become unknown");
+        "map cells up to this distance beside a suspected mirror or pane become unknown; behind it "
+        "the distance grows");
 }
 
 std::optional<std::string> SpecularConfig::problem() const {

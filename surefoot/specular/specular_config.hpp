@@ -13,7 +13,7 @@ namespace surefoot::specular {
 struct SpecularConfig {
     bool enabled = true;
     double cell_m = 0.01;              ///< cell size of the floor picture
-    double range_m = 3.2;              ///< distance of the farthest usable floor from the camera
+    double range_m = 3.2;              ///< largest usable depth of floor, along the optical axis
     double mirror_correlation = 0.35;  ///< smallest correlation of floor and mirror image
     double mirror_score = 7.0;         ///< smallest score of a mirror line (see mirror_correlation)
     double glass_score = 11.0;  ///< smallest score of any other line: glass reflects 5 to 15 %

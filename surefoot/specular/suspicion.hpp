@@ -7,7 +7,7 @@
 namespace surefoot::specular {
 
 /// True if a line is suspected to be a mirror or a pane of glass. Glass has a low correlation.
-/// So glass needs the higher score, and at least twice the score of the second best line of its
+/// So glass needs `glass_score`, and at least twice the score of the second best line of its
 /// patch.
 [[nodiscard]] inline bool is_suspect(const PatchLine& line, const SpecularConfig& config) noexcept {
     constexpr double kGlassUnique = 2.0;

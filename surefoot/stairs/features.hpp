@@ -36,11 +36,11 @@ struct Edge {
     double height_sigma_m = 0.0;  ///< one sigma of upper_m - lower_m
     double across_sigma_m = 0.0;  ///< one sigma of the line's position, across the line
     double angle_sigma_rad = 0.0;
-    /// Depth of the ground on either side, up to the next edge or to unknown ground.
+    /// Depth of the level ground on each side, until it falls, rises or becomes unknown.
     double upper_depth_m = 0.0;
     double lower_depth_m = 0.0;
     /// Natural logarithm of the likelihood ratio "step" over "smooth ground", last observation
-    /// (StepEvidenceFinder). NaN = not computed, because the lower ground is not seen.
+    /// (StepEvidenceFinder). NaN = the lower ground is not seen, or too little ground is known.
     double log_step_ratio = std::numeric_limits<double>::quiet_NaN();
     bool hidden = false;  ///< true: the falling ground between both sides is not seen
 

@@ -75,13 +75,13 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1e12,
                    "smallest likelihood ratio (step to smooth ground) of an edge that counts as a "
-                   "step; 0 = every edge is a step");
+                   "step; 0 = no such check");
     visitor.number("drop_ratio",
                    drop_ratio,
                    0.0,
                    1e12,
-                   "smallest likelihood ratio (step to smooth ground) of a falling edge that "
-                   "counts as a drop; 0 = every falling edge is a drop");
+                   "smallest likelihood ratio (step to smooth ground) of a drop; an edge with a "
+                   "smaller ratio counts as smooth ground; 0 = no such check");
     visitor.number("evidence_shared_m",
                    evidence_shared_m,
                    0.0001,

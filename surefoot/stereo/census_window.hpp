@@ -6,7 +6,7 @@
 namespace surefoot::stereo {
 
 /// Offset [px] of a neighbour with which a census word compares its pixel. The neighbours are the
-/// fields of one colour of a chequered 9 x 7 window, row by row. Each byte of a word holds eight.
+/// fields of one colour of a chequered 9 x 7 window, row by row: 8, 8, 8 and 6 in the four bytes.
 struct CensusNeighbour {
     int du = 0;
     int dv = 0;

@@ -25,8 +25,8 @@ struct MatchEvidence {
 /// times its noise (lab/sigma_fit/main.cpp). Criterion: likelihood of Student's t, with a fixed
 /// share of the shift, and 68 % (95 %) of every image within one (two) sigma. All coefficients
 /// were then multiplied by 1.02, so that on average 68 % lie within one sigma, and rounded.
-/// docs/lab/matching.md has other pairs and the held-out data. With an ideal camera, disparities
-/// scatter two to three times less than this sigma.
+/// docs/lab/matching.md has other pairs and the held-out data. With an ideal camera, the scatter of
+/// the disparities is a third to a half of this sigma.
 [[nodiscard]] float match_sigma_px(const MatchEvidence& evidence) noexcept;
 
 inline constexpr float kSigmaFloor_px = 0.134F;
@@ -47,7 +47,7 @@ inline constexpr float kMaxNoisePerPixel_px = 100.0F;
 // Rounded result of a logistic regression on Middlebury cones and cloth3 and four rendered scenes.
 // Area under the ROC curve before rounding: 0.91-0.92 on the two pairs, 0.88-0.99 on the rendered
 // scenes. On held-out pairs: teddy 0.87 (expected 2.6 % wrong matches, found 4.4 %), and adirondack
-// 0.69 (its true disparities are rounded to whole pixels).
+// 0.69 (its true disparities are rounded down to whole pixels).
 inline constexpr float kScoreConstant = -8.5F;
 inline constexpr float kScoreNearJump = 7.0F;
 inline constexpr float kScoreNoise = 0.18F;

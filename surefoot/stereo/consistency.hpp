@@ -11,7 +11,7 @@ namespace surefoot::stereo {
 /// Left-right check with the left disparities alone. Every left pixel claims the right pixel that
 /// it matches, and the claim with the largest disparity (the nearest) wins. A left pixel becomes
 /// NaN when the winning claim on its right pixel is larger by more than `tolerance_px`, because it
-/// is hidden there. Matches outside the right image become NaN too. No second pass is needed.
+/// is hidden there. Matches outside the right image become NaN too. Needs no right disparities.
 void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparity_px);
 
 /// Writes 255 into `jumps` on both sides of a disparity jump. There the next known pixel of the row

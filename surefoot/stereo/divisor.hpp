@@ -11,9 +11,9 @@ namespace surefoot::stereo {
 /// rounded exactly like the result of a division.
 ///
 /// The proof splits x = h + l and 1 / n = H + L, with 12 bits in h and in H, so that h H is exact.
-/// The rest, h L + l / n, is smaller by 2^-11, so its error is below 2^-34 of the quotient. A
-/// quotient by an odd part m is at least 2^-25 / m = 2^-33 away from the middle between two floats,
-/// where rounding changes direction. Valid for x = 0 and 2^-80 <= |x| <= 2^80.
+/// The rest, h L + l / n, is smaller by a factor of 2^-11, so its error is below 2^-34 of the
+/// quotient. A quotient by an odd part m is at least 2^-25 / m = 2^-33 away from the middle between
+/// two floats, where rounding changes direction. Valid for x = 0 and 2^-80 <= |x| <= 2^80.
 class Divisor {
   public:
     constexpr explicit Divisor(int divisor)
@@ -27,7 +27,7 @@ class Divisor {
     }
 
     // These members are for callers that divide many numbers side by side in a register.
-    static constexpr std::uint32_t kUpperHalf = 0xfffff000U;  ///< bits of a float
+    static constexpr std::uint32_t kUpperHalf = 0xfffff000U;  ///< sign, exponent, 11 fraction bits
     [[nodiscard]] constexpr float inverse() const noexcept { return inverse_; }
     [[nodiscard]] constexpr float upper() const noexcept { return upper_; }
     [[nodiscard]] constexpr float lower() const noexcept { return lower_; }

@@ -21,7 +21,7 @@ void link(const float* disparity_px,
 /// The columns at the ends repeat. `scratch`: 3 (width + 2) floats.
 void median(const float* const lines[3], int width, float* scratch, float* out);
 
-/// Each left pixel claims a right pixel, in column `place`. `offer` = 256 * cost + disparity.
+/// Writes the claim of each left pixel: right column `place` and `offer` = 256 * cost + disparity.
 void claim(const std::uint8_t* disparity,
            const std::uint8_t* cost,
            int width,

@@ -61,9 +61,9 @@ class SubpixelRefiner {
   public:
     explicit SubpixelRefiner(const RefineConfig& config);
 
-    /// Computes `disparity_px` from `found_px` (NaN = unknown; such pixels stay unknown). Both may
-    /// be the same image if there is no filter. `jump_distance_px` is the distance of every pixel
-    /// from the nearest disparity jump.
+    /// Computes `disparity_px` from `found_px` (NaN = unknown). Without a filter, unknown pixels
+    /// stay unknown, and both may be the same image. `jump_distance_px` is the distance of every
+    /// pixel from the nearest disparity jump.
     void refine(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
                 const Image<float>& found_px,

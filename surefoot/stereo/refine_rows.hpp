@@ -44,8 +44,8 @@ struct WarpRow {
     int jump_margin_px = 0;
     int width = 0;
     std::int32_t* evidence = nullptr;
-    // Scratch of the row: the position of each pixel in the right row (0: outside), and the four
-    // right pixels around that position, two in a word.
+    // Scratch of the row: the position of each pixel in the right row (0: outside or beside a
+    // jump), and the four right pixels around that position, two in a word.
     std::int32_t* place = nullptr;
     float* fraction = nullptr;
     std::int32_t* pairs = nullptr;  ///< 2 * width elements

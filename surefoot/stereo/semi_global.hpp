@@ -27,8 +27,8 @@ struct SemiGlobalConfig {
 inline constexpr int kCensusBits = 30;
 
 /// Number of rows by which disparities lag behind, because no path comes from below. On floor with
-/// the ZED's noise the lag causes an error of 0.14 px; a shift by two rows corrects it to less than
-/// 0.01 px (docs/lab/matching.md; lab/pixel_locking: scenes floor and cross_fall, seeds 21-24).
+/// the ZED's noise the lag causes an error of 0.15 px (seed 21); the correction by two rows leaves
+/// 0.008 px. The number was chosen on floor and cross_fall, seeds 21-24 (docs/lab/matching.md).
 inline constexpr int kSearchLag_rows = 2;
 
 /// Result of the search for every pixel of the left image: the disparity of least cost, and the
@@ -57,7 +57,7 @@ void search_plainly(const SemiGlobalConfig& config,
 /// Fast version of search_plainly, with the same bytes. The lanes hold 64 rows (for paths along
 /// rows) or 64 columns, so that no step needs a neighbouring lane. The cost volume covers only
 /// 64 x 64 pixels and stays in the cache. Run-time dispatch picks the widest instructions of the
-/// processor. Threads share strips of rows. After the first pair of a size nothing is allocated.
+/// processor. Threads work on strips of rows. After the first pair of a size nothing is allocated.
 class SemiGlobalSearch {
   public:
     /// `config` must have no problem().

@@ -22,7 +22,8 @@ constexpr double kLeastGain = 0.2;
 constexpr double kMiddleGrey = 128.0;  ///< makes gain and offset nearly independent
 constexpr double kSingular = 1e-6;
 
-/// Shift of the pixel (x, y) of the window: columns by c + a x + b y, rows by r.
+/// Shift of the pixel (x, y) of the window: columns_px + slant_x x + slant_y y columns and rows_px
+/// rows.
 struct Warp {
     double columns_px = 0.0;
     double slant_x = 0.0;

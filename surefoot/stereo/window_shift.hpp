@@ -23,9 +23,9 @@ inline constexpr int kShiftHalf_px = 7;
 /// Method: Gauss-Newton on the grey values (Lucas and Kanade 1981); steps use only gradients of the
 /// left image (Baker and Matthews 2004). Unknowns: both shifts, gain, offset, and the change of the
 /// column shift along both sides of the window (nearly a pixel for ground seen from above). A
-/// parabola through a correlation prefers whole pixels: with texture of two pixels it loses a tenth
-/// of every fraction. Here only the interpolation can err so; it uses six pixels. Noise adds no
-/// bias: the noise of the left gradients is independent of the right image's noise.
+/// parabola through correlations leans toward whole pixels: a texture of two-pixel grains makes the
+/// fraction a tenth too small. Here only the interpolation, over six pixels, can cause this error.
+/// Noise adds no bias: the noise of the left gradients is independent of the right image's noise.
 ///
 /// Returns nothing if the window leaves an image or has no texture in some direction. Also returns
 /// nothing if it slants too much, ends more than one pixel from `start`, or does not converge.

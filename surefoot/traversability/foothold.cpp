@@ -390,8 +390,9 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
                    corner_m,
                    0.0,
                    1.0,
-                   "largest distance by which a drop may begin before its edge in the map; 0 "
-                   "switches this test off");
+                   "a foothold is unsure if ground in the band, or up to this distance beyond the "
+                   "band, is proven to lie more than half of drop_m below the foot; 0 = no such "
+                   "check");
     visitor.number("drop_m",
                    drop_m,
                    0.001,
@@ -431,8 +432,8 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "side length of a square; an overhead object smaller than this square may be a "
-                   "wrong match");
+                   "side length of a square: a low overhead object over less than this area may be "
+                   "a wrong match and makes the foothold unsure");
 }
 
 std::optional<std::string> FootholdConfig::problem() const {

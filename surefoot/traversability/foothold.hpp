@@ -31,7 +31,7 @@ struct FootholdConfig {
     double patch_side_m = 0.05;
     double max_residual_m = 0.025;   ///< largest distance of a patch mean from the foot's plane
     double sigma_factor = 3.4;       ///< one-sided error probability 3e-4
-    double independent_cells = 4.0;  ///< largest number of independent cells in a patch
+    double independent_cells = 4.0;  ///< largest number of independent errors in a patch
     /// A semi-global matcher shares its errors over 30-50 px: over 0.1 m of floor 1 m away.
     double correlation_m = 0.1;
     double clearance_m = 2.05;  ///< height of the tallest user who stands on the foot plates
@@ -49,7 +49,7 @@ struct FootholdConfig {
 enum class Foothold : std::uint8_t {
     unknown,      ///< not all cells under the foot and around it are known
     safe,         ///< proven safe at `sigma_factor`
-    unsure,       ///< heights too uncertain to prove safe or unsafe
+    unsure,       ///< neither proven safe nor proven unsafe
     unreachable,  ///< safe, but no known way leads there from the stance
     drop,         ///< `drop` and the following values: proven unsafe, with the cause
     tilted,
@@ -84,7 +84,7 @@ struct FootholdGround {
 ///   mean. Its variance is that of a cell over the number of cells (at most `independent_cells`);
 /// - low: the free height is below `clearance_m` over as many cells of F as fit in a square of
 ///   `overhead_side_m`. Fewer such cells (wrong matches, but also cables), or any in B (the far rim
-///   of a table top is too flat to be measured), are unsure;
+///   of a table top is often not measured), are unsure;
 /// - unreachable: the cell has no `reach_step_m`.
 /// A limit that is only exceeded when k sigma are added gives unsure. Also unsure are
 /// - cells with ground in B, or within `corner_m` beyond B, that is proven to lie more than half of

@@ -61,14 +61,14 @@ struct FootprintLayers {
 };
 
 enum class FootprintOutcome : std::uint8_t {
-    invalid_pose,  ///< no pose, a pose that is not finite, or one more than 2^20 cells away:
+    invalid_pose,  ///< no pose, or a pose that is not finite or lies beyond 2^20 cells:
                    ///< no cells were read
     invalid_map,   ///< no cell size, or layers of another size than the grid: no cells were read
     outside_map,   ///< cells were counted, but none lies in the map
     rated,         ///< at least one cell lies in the map; it may be unknown
 };
 
-/// Cells under a footprint. A default-constructed report is traversable under no policy.
+/// Cells under a footprint. No policy accepts a default-constructed report.
 struct FootprintReport {
     FootprintOutcome outcome = FootprintOutcome::invalid_pose;
     std::int64_t cells = 0;           ///< cells that the shape overlaps, each counted once

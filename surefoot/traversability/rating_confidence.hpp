@@ -27,16 +27,16 @@ struct ConfidenceLayers {
 ///
 /// The patch is that of the gate (foot_support.hpp). The variance of a mean of n cells is
 ///   (mean of their variances) / k,   k = min(n, independent_cells),
-/// because neighbouring errors are partly the same error. 3.4 sigma is one-sided 3e-4. With a step
-/// of 10 mm, a patch is not resolvable above 2.94 mm; the gate's limit is 3 mm.
+/// because neighbouring errors are partly the same error. A normal error exceeds 3.4 sigma with
+/// probability 3e-4. So a step of 10 mm needs a sigma of at most 2.94 mm; the gate allows 3 mm.
 ///
-/// Confidence, with v = mean variance in the disc of the normals, n = its known cells, and f =
-/// their share of all its cells:
+/// Confidence, with v = mean variance in the disc of the normals, n = its known cells, f = their
+/// share of all its cells, k as above, and n_z = z of the normal:
 ///   - slope: a fitted gradient has variance v / (k m) along each axis, m = mean square of the
 ///     distances along x in the disc. A strip of share f keeps f^2 of m (half a disc 0.28). The
 ///     slope changes by no more than the gradient: sigma_slope = n_z^2 sqrt(2 v / (k m)) / f.
-///   - roughness R = standard deviation of heights around the plane: E[R^2] = R0^2 + v, so R is
-///     too large by at most sqrt(v), and its own scatter is below sqrt(1.5 v / (k - 1)):
+///   - roughness R = standard deviation of heights around the plane; R0 = R without noise:
+///     E[R^2] = R0^2 + v. R is at most sqrt(v) too large; its sigma is below sqrt(1.5 v / (k - 1)):
 ///     sigma_roughness^2 = v (1 + 1.5 / (k - 1)).
 ///   - step: a step height x = highest - lowest of a disc is too small by at most the error of the
 ///     true pair, sqrt(2 v). It is too large by at most the range of the disc's errors, with mean

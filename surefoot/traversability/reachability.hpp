@@ -38,8 +38,8 @@ struct Stance {
 /// Stance: the known cells with their centre within `stance_radius_m` of the body along the ground.
 /// If they are fewer than kStanceCells (ground at the feet not in view), the radius is larger: the
 /// distance within which so many cells (or all) are known, plus `stance_radius_m`. The lowest
-/// surface counts, because a table top may hang over the feet. It is the lowest kSurface_m of
-/// height with a quarter of these cells. So neither a stray low cell nor the pit beside a landing
+/// surface counts, because a table top may hang over the feet. It is the lowest range of
+/// heights, kSurface_m high, with a quarter of these cells. So neither a stray low cell nor a pit
 /// becomes the stance. If no such range exists, the range with most cells counts. The height of the
 /// body is not used, because base_link may be anywhere above the ground.
 ///

@@ -9,7 +9,7 @@
 namespace surefoot::traversability {
 
 /// Largest values in runs of cells along the rows of a map, for runs shorter than 128 cells: two
-/// overlapping runs of 1, 2, 4 ... 64 cells cover any run. Cells outside of the map are empty.
+/// overlapping runs of 1, 2, 4 ... 64 cells cover any run. Cells outside of the map are -infinity.
 class RunMaxima {
   public:
     static constexpr int kMargin = 64;  ///< columns beside the map that queries may cover

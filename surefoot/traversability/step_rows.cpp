@@ -106,8 +106,8 @@ HWY_INLINE void reduce_row(const Figures& figures,
     }
 }
 
-/// Computes the figures of the discs around the columns from `ix` on, for each row of `rect`, and
-/// calls finish(iy, figures).
+/// Computes the figures of the discs around one vector of columns, `ix` and the columns after it,
+/// and calls finish(iy, figures) for each row of `rect`.
 template <class Figures, class Finish>
 HWY_INLINE void down_the_stripe(const Figures& figures,
                                 const PaddedLayer& layer,

@@ -11,7 +11,7 @@
 /// formulas.
 namespace surefoot::traversability::rows {
 
-/// Two figures of runs with one half width around neighbouring columns.
+/// Two figures of each run (such as lowest and highest height); one lane per neighbouring column.
 struct alignas(64) StepRun {
     static constexpr int kLanes = 16;
     float figures[2][kLanes];

@@ -17,10 +17,10 @@ enum class Combine : std::uint8_t {
     zero_dominates,  ///< an exact 0 in a weighted layer forces 0, even with unknown layers
 };
 
-/// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. A radius must
-/// be at least one cell: a disc of a single cell measures no slope and no step, and its layer stays
-/// unknown. Defaults: critical values of `ethz`; radii between the centre distances of a 25 mm grid
-/// (no cell on the rim), large enough to average stereo noise.
+/// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. The radii of
+/// normals, roughness and the first step disc must be at least one cell, because a disc of a single
+/// cell measures nothing. Defaults: critical values of `ethz`; radii of the filters between centre
+/// distances of a 25 mm grid (no cell on the rim), large enough to average stereo noise.
 struct TraversabilityConfig {
     struct Normals {
         double radius_m = 0.08;
@@ -82,9 +82,9 @@ struct TraversabilityConfig {
 
     /// Returns the first reason why this config cannot rate a grid of that cell size, or nothing.
     [[nodiscard]] std::optional<std::string> problem(double resolution_m) const;
-    /// Returns a copy in which every radius below one cell becomes one cell, the smallest disc with
-    /// neighbours. So one configuration also serves coarse maps, and obstacles grow no more than
-    /// necessary.
+    /// Returns a copy in which the radii of normals, step and roughness are at least one cell, the
+    /// smallest disc with neighbours. So one configuration also serves coarse maps, and obstacles
+    /// grow no more than necessary.
     [[nodiscard]] TraversabilityConfig widened_to(double resolution_m) const;
 };
 

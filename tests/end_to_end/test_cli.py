@@ -500,7 +500,7 @@ class Measures(CliTest):
         (self.dir / "far.xyz").write_text("0 0 0\n1e9 1e9 0\n")
         process = surefoot("dem", self.dir / "far.xyz", "--resolution", 0.01, "--out", self.dir / "d.asc")
         self.assertEqual(process.returncode, 2, process.stderr)
-        self.assertIn("larger resolution", process.stderr)
+        self.assertIn("choose larger cells", process.stderr)
 
     def test_trajectories_of_other_programs_are_read_and_named(self):
         stamps = [1403636579000000000 + 50000000 * i for i in range(40)]

@@ -35,6 +35,6 @@ export class FeatureTable {
   #note(rows: number): string {
     if (!this.#store.stairs) return "Waiting for stairs and edges.";
     if (rows === 0) return "No flight, drop, kerb, sill or door has been found.";
-    return "± is one standard error. Positions are in odom. The angle is the direction over the feature, from the x axis.";
+    return "± is one standard error. Positions are in odom. The angle is the walking direction across the feature, counted from the x axis.";
   }
 }

@@ -194,15 +194,15 @@ function decodeMap(view: DataView, at: number): BinaryMessage {
     edges.push(read(view, at, kEdgeFields));
   const runs: Run[] = [];
   for (let i = 0; i < head.run_count; ++i) {
-    if (view.byteLength < at + sizeOf(kRunFields)) return unreadable(`map: the message ends before run ${i}`);
+    if (view.byteLength < at + sizeOf(kRunFields)) return unreadable(`map: the message ends before cell run ${i}`);
     const { first, count } = read(view, at, kRunFields);
     at += sizeOf(kRunFields);
-    if (first + count > cell_count) return unreadable(`map: run ${i} ends outside the map`);
-    if (view.byteLength < at + count * sizeOf(kCellFields)) return unreadable(`map: the message ends inside run ${i}`);
+    if (first + count > cell_count) return unreadable(`map: cell run ${i} ends outside the map`);
+    if (view.byteLength < at + count * sizeOf(kCellFields)) return unreadable(`map: the message ends inside cell run ${i}`);
     runs.push({ first, count, at });
     at += count * sizeOf(kCellFields);
   }
-  if (at !== view.byteLength) return unreadable(`map: ${view.byteLength - at} bytes follow the last run`);
+  if (at !== view.byteLength) return unreadable(`map: ${view.byteLength - at} bytes follow the last cell run`);
   return { kind: "map", ...head, edges, runs, cells: view };
 }
 

@@ -38,7 +38,7 @@ class AuditDisk {
     [[nodiscard]] virtual Written write(std::string_view bytes) = 0;
     /// Truncates the file that was created last to `bytes` bytes.
     [[nodiscard]] virtual Status truncate(std::uint64_t bytes) = 0;
-    /// Returns when the written bytes are safe against a power loss.
+    /// Waits until the written bytes are safe against a power loss.
     [[nodiscard]] virtual Status sync() = 0;
     virtual void close() = 0;
     [[nodiscard]] virtual Status remove(const std::string& name) = 0;

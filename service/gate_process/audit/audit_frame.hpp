@@ -52,7 +52,7 @@ struct FileHead {
 [[nodiscard]] std::string format_file_head(const FileHead& head);
 [[nodiscard]] Status parse_file_head(std::string_view bytes, FileHead& head);
 
-/// Verdicts and acts that were lost because the disk accepted no data and the memory was full.
+/// Verdicts and acts that were lost: the memory was full, or the log ended before it wrote them.
 struct AuditGap {
     std::uint64_t verdicts = 0;
     std::int64_t first_ns = 0;  ///< times of the first and the last lost entry

@@ -24,7 +24,7 @@ struct AuditConfig {
     std::int64_t behind_after_ns = 1'000'000'000;  ///< state `behind` if an entry waits longer
     std::int64_t poll_ns = 10'000'000;     ///< the thread looks for entries at this interval
     std::int64_t retry_ns = 200'000'000;   ///< pause after a failed attempt to write
-    std::int64_t sync_ns = 1'000'000'000;  ///< a power loss costs at most the entries of this time
+    std::int64_t sync_ns = 1'000'000'000;  ///< sync period; a power loss costs the unsynced entries
 
     [[nodiscard]] std::optional<std::string> problem() const;
 };

@@ -52,7 +52,7 @@ void AuditReader::read(std::string_view bytes, const std::string& file) {
     summary_.bytes += bytes.size();
     file_ = file;
     offset_ = 0;
-    if (bytes.empty()) end_unfinished(0, "are the whole file");
+    if (bytes.empty()) end_unfinished(0, "are the whole file (it is empty)");
     while (offset_ < bytes.size()) {
         const std::string_view rest = bytes.substr(offset_);
         const std::optional<Frame> frame = next_frame(rest);

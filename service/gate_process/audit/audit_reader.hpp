@@ -95,7 +95,7 @@ class AuditReader {
 
 /// Returns the log files of a folder in order, or the single given file.
 [[nodiscard]] Result<std::vector<std::string>> audit_files_of(const std::string& path);
-/// Reads all given files. Error only if a file is unreadable; the summary states any damage.
+/// Reads audit_files_of(path). Error if a file is missing or unreadable; damage is in the summary.
 [[nodiscard]] Result<AuditSummary> read_audit(const std::string& path,
                                               AuditReader::OnVerdict on_verdict,
                                               AuditReader::OnAct on_act = {});

@@ -31,8 +31,8 @@ struct AuditRecord {
     gate::GateHealth health;
     std::int64_t now_ns = 0;
     gate::Verdict verdict;
-    /// True if the whole snapshot was intact. Copied from the verdict, because the record does not
-    /// contain all cells.
+    /// True if the header of the snapshot was intact (Proof::snapshot_intact). Copied from the
+    /// verdict, because the record does not contain all cells.
     bool snapshot_intact = false;
     bool cells_intact = false;  ///< the cells that the decision reads are intact
     CellBox zone;

@@ -10,7 +10,7 @@
 
 namespace surefoot::gate_process {
 
-/// Decides when health and diagnostics are published: health at once after a change of state and
+/// Decides when health and diagnostics are published: health within 20 ms of a change of state,
 /// else every 400 ms, diagnostics every second, as ROS tools expect. A client without health
 /// messages for one second knows that the gate has stopped.
 class PeriodicTopics {

@@ -182,7 +182,7 @@ void RosbridgeSession::unsubscribe(const Call& call) {
     const std::string name = text_member(call.message, "topic");
     const TopicEntry* entry = find_topic(name);
     if (entry == nullptr || !subscriptions_.remove(entry->topic, text_member(call.message, "id")))
-        status(call, Level::warning, "no subscription to '" + name + "'");
+        status(call, Level::warning, "this client has no subscription to '" + name + "'");
 }
 
 void RosbridgeSession::advertise(const Call& call) {

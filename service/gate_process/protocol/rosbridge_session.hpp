@@ -40,9 +40,9 @@ struct Reaction {
 };
 
 /// The server side of one rosbridge client (protocol version 2). Turns a text into texts; has no
-/// socket, clock or thread. Every valid step question is passed to the gate exactly once.
-/// Only the gate's own OK to this connection and sequence is returned as OK. Unreadable or too
-/// frequent questions get ERROR. Text that is not JSON or not a message gets a status and has no
+/// socket, clock or thread. A valid step question within the rate limit reaches the gate exactly
+/// once. Unreadable or too frequent questions get ERROR. Only the gate's own OK to this connection
+/// and sequence is returned as OK. Text that is not JSON or not a message gets a status and has no
 /// effect. A request beyond the client's role is refused with a message, logged, and never
 /// reaches the gate.
 class RosbridgeSession {

@@ -19,10 +19,10 @@ struct TopicMessage {
     std::shared_ptr<const std::string> body;
 };
 
-/// The rate at which a client wants a topic. `interval_ns`: throttle_rate of rosbridge (ms there).
+/// A subscription of a client to a topic. `interval_ns`: throttle_rate of rosbridge (ms there).
 /// `queue_length`: number of messages that are kept during the interval.
 struct SubscriptionWish {
-    std::string id;  ///< id of the wish; may be empty
+    std::string id;  ///< id of the subscription; may be empty
     std::int64_t interval_ns = 0;
     std::size_t queue_length = 0;
 };
@@ -34,10 +34,10 @@ class Subscriptions {
   public:
     explicit Subscriptions(std::size_t max_count) : max_count_(max_count) {}
 
-    /// Adds a wish. `name`: in the client's spelling, which the messages repeat. A wish with the
-    /// same id replaces the earlier wish. Returns an error above the limit of subscriptions.
+    /// Adds a subscription. `name`: the topic in the client's spelling, which the messages repeat.
+    /// It replaces a subscription to the topic with the same id. Error above the limit.
     [[nodiscard]] Status add(Topic topic, std::string name, SubscriptionWish wish);
-    /// Removes one wish, or with an empty id all wishes for the topic. False if there was no wish.
+    /// Removes one subscription, or with an empty id all of the topic. False if there was none.
     bool remove(Topic topic, const std::string& id);
     /// Returns the complete texts to send now; may be empty.
     [[nodiscard]] std::vector<std::string> offer(const TopicMessage& message, std::int64_t now_ns);

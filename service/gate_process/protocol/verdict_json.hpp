@@ -20,7 +20,7 @@ namespace surefoot::gate_process {
 /// Returns the numbers behind a verdict, lengths in m; unknown values are null.
 [[nodiscard]] Json evidence_object(const gate::Verdict& verdict);
 /// Returns {verdict, result_code, reasons, primary, text, evidence, command, sequence, connection,
-/// map_version, config_hash, decided_ns, valid_until_ns, valid_for_ms}. 64-bit values above the
+/// map_version, config_hash, decided_ns, valid_until_ns, valid_for_ms}. Values that may exceed the
 /// range of a JavaScript number are strings: the hash in hexadecimal, times in decimal digits.
 [[nodiscard]] Json verdict_object(const gate::Verdict& verdict, const std::string& text);
 

@@ -28,7 +28,7 @@ struct TlsDoorConfig {
     std::uint16_t port = 0;  ///< 0 = any free port
     TlsFiles files;
     std::size_t max_connections = 320;  ///< limit, including connections with unfinished handshakes
-    std::size_t max_handshakes = 64;    ///< limit; then the fullest peer's oldest handshake ends
+    std::size_t max_handshakes = 64;    ///< above it, the peer with the most loses its oldest
     int handshake_ms = 5000;
 };
 

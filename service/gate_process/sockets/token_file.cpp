@@ -155,7 +155,8 @@ Result<LoadedAccess> load_access(const std::string& token_file,
     const std::string path = token_file.empty() ? default_token_file() : token_file;
     auto tokens =
         path.empty()
-            ? Result<TokenFile>(usage_error("HOME is not set, so there is no default token file"))
+            ? Result<TokenFile>(usage_error("neither XDG_STATE_HOME nor HOME is an absolute path, "
+                                            "so there is no default token file"))
             : read_or_make_tokens(path);
     if (!tokens && !token_file.empty()) return tokens.error();
     if (tokens) {

@@ -18,7 +18,7 @@ inline constexpr const char* kBoardKindNames[] = {
 struct Board {
     BoardKind kind = BoardKind::chessboard;
     /// Points per row, and number of rows. Points: inner corners of a chessboard or ChArUco board
-    /// (squares - 1), or circles. Asymmetric circles: odd rows are shifted by half the spacing.
+    /// (squares - 1), or circles. Asymmetric circles: every second row shifts by half the spacing.
     int columns = 9;
     int rows = 6;
     /// Distance between neighbours in a row [m]: side of a square, or distance of circles. Rows of

@@ -10,8 +10,8 @@
 
 namespace surefoot::calibration {
 
-/// Second-order model of the pixel as a function of the board position x around one point: `pixel`
-/// + J x + (x' H_u x, x' H_v x) / 2.
+/// Second-order model of the pixel as a function of x, the board position relative to one point:
+/// `pixel` + J_px_m x + (x' H_u x, x' H_v x) / 2.
 struct LocalMap {
     Eigen::Vector2d pixel;
     Eigen::Matrix2d J_px_m;
@@ -25,8 +25,8 @@ struct LocalMap {
 [[nodiscard]] std::optional<LocalMap> fit_local_map(const std::vector<Eigen::Vector2d>& places_m,
                                                     const std::vector<Eigen::Vector2d>& pixels);
 
-/// Sorts the points of a whole grid along rows and columns, into the order of Board::points_m that
-/// detect_board promises. Returns nullopt if no order looks like the board.
+/// Brings all points of a grid into the order that detect_board promises. `found` lists them line
+/// by line, from any corner of the grid. Returns nullopt if no order looks like the board.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ordered_points(
     const Board& board,
     const std::vector<Eigen::Vector2d>& found,

@@ -122,8 +122,8 @@ GrownChessboard board_in(const Board& board, const Lattice& lattice) {
     const bool larger = border_shares(lattice, best, true).second > kLeastOfBorder;
     if (larger) {
         grown.problem = fmt::format(
-            "the chessboard in the image has {} inner corners, more than the {} x {} of the given "
-            "board; give the size of the board in the image",
+            "the chessboard in the image has at least {} inner corners, more than the {} x {} of "
+            "the given board; give the size of the board in the image",
             size_text,
             board.columns,
             board.rows);

@@ -26,8 +26,8 @@ struct GrownChessboard {
 /// them. Needs no lens model; neighbouring squares only have to look similar.
 ///
 /// Of several such boards, returns the board that fills the largest part of the image: others may
-/// be reflections or pictures on screens. Does not find a board that is partly outside the image or
-/// part of a larger board: the ids of its points would be uncertain.
+/// be reflections or pictures on screens. Each outer row and column must be at least half visible,
+/// and the board must not be part of a larger board: otherwise the ids would be uncertain.
 [[nodiscard]] GrownChessboard grown_chessboard(const Board& board,
                                                std::span<const ChessCorner> corners,
                                                ImageView<const std::uint8_t> image);

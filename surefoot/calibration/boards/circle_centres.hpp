@@ -15,8 +15,8 @@ struct DiscImages {
     double radius_m = 0.0;
 };
 
-/// Measures the centres of gravity and the common radius, from rough centres. A circle with low
-/// contrast keeps its rough centre. This is not the image of the centre (see disc_image.hpp).
+/// Measures the common radius and the centres of gravity (not the images of the centres: see
+/// disc_image.hpp), from rough centres. A circle with low contrast keeps its rough centre.
 [[nodiscard]] DiscImages measured_discs(const Board& board,
                                         const std::vector<Eigen::Vector2d>& rough,
                                         ImageView<const std::uint8_t> image);

@@ -20,8 +20,8 @@ struct BoardSighting {
 /// Returns an error if the board cannot be detected: wrong sizes or wrong ChArUco dictionary.
 [[nodiscard]] Status check_detectable(const Board& board);
 
-/// Detects the board in an image, to sub-pixel accuracy. Grids and chessboards must be fully
-/// visible; a ChArUco board needs `kFewestCharucoPoints` points that do not lie on one line.
+/// Detects the board in an image, to sub-pixel accuracy. Chessboards may lack a few corners, circle
+/// grids none; a ChArUco board needs `kFewestCharucoPoints` points, not all on one line.
 ///
 /// Order of the points, seen from the front: x of the board points right and y down. The square
 /// between the first four points of a chessboard is black. If a board looks the same after a
@@ -29,8 +29,8 @@ struct BoardSighting {
 /// second camera of a pair agree with the first.
 ///
 /// Circles: gives the centre of gravity of each dark area, and the radius from its size. On a near,
-/// tilted board the image of a circle's centre lies up to half a pixel beside it. Computing that
-/// offset needs the lens model.
+/// tilted board the image of a circle's centre lies up to half a pixel beside this centre of
+/// gravity. Computing that offset needs the lens model.
 inline constexpr int kFewestCharucoPoints = 6;
 [[nodiscard]] BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> image);
 
@@ -38,7 +38,7 @@ inline constexpr int kFewestCharucoPoints = 6;
 /// The identity comes first, then valid rotations by a quarter, half and three quarters turn.
 [[nodiscard]] std::vector<std::vector<int>> turns_of(const Board& board);
 
-/// Renumbers the view by the rotation of the board whose rows are most parallel to the rows of
+/// Renumbers the view by the one of `turns_of` that makes its rows most parallel to those of
 /// `reference`. Valid for the two cameras of a rig if their rotations differ by less than 45 deg.
 [[nodiscard]] BoardView turned_like(const Board& board,
                                     const BoardView& reference,

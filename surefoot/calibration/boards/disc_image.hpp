@@ -11,9 +11,9 @@ namespace surefoot::calibration {
 /// px for discs that fill half of their cells on a board that fills the image.
 inline constexpr int kRimPoints = 8;
 
-/// Rim points of a disc of radius 1, and weights for the derivative by the angle. The weights are
+/// Rim points of a disc of radius 1, and weights for the derivative with respect to the angle:
 /// those of a trigonometric polynomial through values at equal angles (Trefethen, *Spectral methods
-/// in MATLAB*, 2000, chapter 3). They repeat around the rim.
+/// in MATLAB*, 2000, chapter 3). Every rim point uses the same weights.
 struct Rim {
     std::array<double, kRimPoints> x{};
     std::array<double, kRimPoints> y{};

@@ -52,7 +52,7 @@ struct BundleOptions {
 
 /// Minimises the reprojection error with Ceres, in one thread and a fixed order of summation: equal
 /// input gives equal bytes. Returns the cost: half the sum of (robust) squared pixel errors, plus
-/// the priors of a rational lens. Returns nullopt if the solver fails.
+/// the costs of the rational prior and the growth limit. Returns nullopt if the solver fails.
 [[nodiscard]] std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options);
 
 /// Returns measured minus predicted pixels, one per sight; NaN if a point has no image.

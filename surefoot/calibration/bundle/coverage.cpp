@@ -145,8 +145,8 @@ void advise_distances(int width, int height, const Board& board, Coverage& cover
     const double near_px =
         std::sqrt(kNearView * width * height / ((board.columns + 1.0) * (board.rows + 1.0)));
     coverage.advice.push_back(
-        fmt::format("All views are about equally far away (points {:.0f} to {:.0f} px apart): show "
-                    "the board {} too.",
+        fmt::format("The board is about equally far away in all views (neighbouring points {:.0f} "
+                    "to {:.0f} px apart): show the board {} too.",
                     smallest_px,
                     largest_px,
                     largest_px < near_px ? "nearer" : "further away"));

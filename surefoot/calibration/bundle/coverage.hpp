@@ -17,7 +17,7 @@ inline constexpr const char* kNearSideNames[] = {"left", "right", "top", "bottom
 /// Smallest angle of a view that counts as tilted; for the reason see coverage.cpp.
 inline constexpr double kEnoughTilt_deg = 20.0;
 
-/// Pose of a board, estimated from the image alone.
+/// Size and tilt of a board in the image, estimated without a lens model.
 struct ViewShape {
     double spacing_px = 0.0;  ///< distance of neighbours in the middle: geometric mean of both axes
     /// Angle between the board and the image plane, from the foreshortening in the middle of the

@@ -7,8 +7,8 @@
 
 namespace surefoot::calibration {
 
-/// Returns the median of repeated estimates of one pose, per coordinate of the position and of the
-/// rotation vector relative to the median itself. Needs at least one pose.
+/// Returns the median of one or more poses. Position: the median of each coordinate. Rotation: the
+/// rotation vectors from the result to the poses have the median 0 in each coordinate.
 [[nodiscard]] Pose median_pose(std::span<const Pose> poses);
 
 /// Difference between two poses.

@@ -19,7 +19,7 @@ struct RejectedView {
     friend bool operator==(const RejectedView&, const RejectedView&) = default;
 };
 
-/// Adds a view, in ascending order of index. Appends a second reason to the first.
+/// Adds a view, in ascending order of index. Appends a second reason for a view to its first.
 void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::string& reason);
 
 /// Describes the first problem of a view; nullopt if the view is usable. Problems: ids and pixels

@@ -14,8 +14,8 @@ namespace surefoot::calibration {
 /// Error of a lens kind, from the cross-validation of try_lens.
 struct LensTrial {
     LensKind kind = LensKind::pinhole5;
-    /// Median of the rms values of the views [px]; infinite unless the lens shows more than half of
-    /// the views.
+    /// Median of the rms values of the views [px]; infinite unless the lens can image more than
+    /// half of the views.
     double rms_px = 0.0;
 };
 

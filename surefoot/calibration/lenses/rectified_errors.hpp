@@ -37,7 +37,7 @@ void for_each_common_point(const BoardView& left, const BoardView& right, const 
                                 std::span<const std::pair<BoardView, BoardView>> pairs,
                                 double focal_px);
 
-/// A stereo calibration as one vector: left lens, right lens and T_left_right.
+/// Parameters of a stereo calibration, in the order of their covariance.
 struct StereoParameters {
     LensKind kind = LensKind::pinhole5;
     ImageSize size;

@@ -10,7 +10,7 @@
 
 namespace surefoot::elevation {
 
-/// Settings that reduce the points of one frame in one cell to one measurement.
+/// Settings for the reduction of the points of one frame in one cell to one measurement.
 struct ReductionConfig {
     int min_points = 3;              ///< fewer points on one surface give no measurement
     double upper_share = 0.1;        ///< smallest share of a cell's points on its upper surface
@@ -25,7 +25,7 @@ struct ReductionConfig {
     double systematic_sigma_m = 0.002;  ///< calibration and lattice errors, in every measurement
     /// A cell that reaches beyond the image needs this share of the points of level ground. A point
     /// from outside the image reaches the cell only if its error points inwards. With a standing
-    /// camera such points collect, and the ground looks 15 mm too high there (ZED, 1.2 m).
+    /// camera such points collect, and the ground looks 15 mm too high there (ZED, 1.2 m away).
     double border_share = 0.75;
 
     void describe(ConfigVisitor& visitor);
@@ -55,7 +55,7 @@ struct CellMeasurement {
 
 // Parts that both `reduce_cell` and `reduce_cells` use.
 
-inline constexpr int kClimbs = 3;    ///< steps; after 3 the error is a few % of the window
+inline constexpr int kClimbs = 3;    ///< mean-shift steps; 3 leave an error of a few % of a window
 inline constexpr int kMaxTries = 4;  ///< largest number of start heights that are tried per cell
 
 /// Returns the number of points that a surface needs in a cell of `n` points.

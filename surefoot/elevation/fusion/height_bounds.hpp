@@ -12,11 +12,11 @@ namespace surefoot::elevation {
 /// Lower and upper bound of the ground in a cell whose horizontal position is uncertain. They are
 /// the lowest and the highest value of any known cell within the horizontal uncertainty:
 ///   lower = min over |dx|, |dy| <= r of (h - k sigma),   upper = max of (h + k sigma),
-///   r = ceil(k drift / resolution) of the requested cell.
+///   r = ceil(k drift / resolution) of the requested cell, k = `sigmas`.
 /// The fused map of the reference implementation (Fankhauser 2014) takes weighted quantiles in an
-/// ellipse: 0.3 s at 12 mm of uncertainty, 19 s at 100 mm. A square without weights is on the safe
-/// side, and its time is bounded. A table of minima over blocks of 1, 2, 4, ... cells answers a
-/// square of any size with four look-ups (more at the border).
+/// ellipse: 0.3 s a map at 12 mm of drift, 19 s at 100 mm (docs/evidence/benchmarks.md). A square
+/// without weights is on the safe side, and its time is bounded. A table of minima over blocks of
+/// 1, 2, 4, ... cells answers a square of any size with four look-ups (more at the border).
 class HeightBounds {
   public:
     struct Input {

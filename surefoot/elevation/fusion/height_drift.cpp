@@ -79,14 +79,15 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                     kept_motions,
                     0,
                     100000,
-                    "the height difference of an old cell is kept for this number of frames with "
-                    "an uncertain motion (covariance above 0)");
+                    "the difference between measured and remembered height of an old cell is kept "
+                    "for this number of frames with an uncertain motion (covariance above 0)");
     visitor.integer("min_cells",
                     min_cells,
                     1,
                     4096,
-                    "smallest number of cells in the older half of the old cells that a height "
-                    "correction needs; one cell of four is counted");
+                    "a height correction needs at least this many cells. The check uses every "
+                    "fourth cell (every second one of every second row), and of the old cells only "
+                    "the half that agreed with an observation the longest time ago");
     visitor.integer("min_tiles",
                     min_tiles,
                     4,
@@ -98,14 +99,14 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
         min_spread_m,
         0.0,
         100.0,
-        "smallest standard deviation of the positions of the squares of 8 x 8 cells that "
-        "show the height offset, along their longer axis");
+        "a height correction needs at least this standard deviation of the positions of the "
+        "squares (see min_tiles), along the direction in which they spread most");
     visitor.number("agreeing_share",
                    agreeing_share,
                    0.5,
                    1.0,
-                   "smallest share of the counted cells (see min_cells) that must show the same "
-                   "height offset within their noise");
+                   "a height correction needs at least this share of the old cells (see min_cells) "
+                   "with the same height offset within their noise");
     visitor.number("significance_sigmas",
                    significance_sigmas,
                    0.1,

@@ -19,9 +19,9 @@ struct HeightDriftConfig {
     /// frame, and if their error reaches `min_drift_m`. Younger cells show the frame's own error.
     int min_motions = 10;
     double min_drift_m = 0.003;        ///< smallest height error of these motions (1 sigma)
-    double level_m = 0.03;             ///< largest height difference to the cells two cells aside
+    double level_m = 0.03;             ///< largest height difference to the map two cells away
     int kept_motions = 15;             ///< residuals of old cells are kept for this many motions
-    int min_cells = 40;                ///< fewest cells in the older half; one cell of four is used
+    int min_cells = 40;                ///< fewest checked cells (the older half of the old cells)
     int min_tiles = 8;                 ///< fewest tiles of 8 x 8 cells; matcher errors span a tile
     double min_spread_m = 0.3;         ///< smallest spread of the tiles, longer axis (1 sigma)
     double agreeing_share = 0.8;       ///< smallest share of these cells with the same offset

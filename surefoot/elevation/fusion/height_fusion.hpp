@@ -21,7 +21,7 @@ struct FusionConfig {
     double gate_sigma = 2.5;            ///< largest innovation that passes the gate [sigma]
     double min_height_var_m2 = 9e-6;    ///< lower limit, (3 mm)^2: averaging leaves some errors
     double max_height_var_m2 = 2.5e-3;  ///< (50 mm)^2: a contradicted cell beyond this is replaced
-    /// Largest addition for a rejected measurement, (10 mm)^2. Smaller if less explains it.
+    /// A rejected measurement adds as much variance as explains it, and at most this, (10 mm)^2.
     double multi_height_var_m2 = 1e-4;
     /// One rejected measurement multiplies the cell's sigma by at most this factor. The constant
     /// addition alone overstates the error (docs/decisions/027-contradiction-doubles-sigma.md).
@@ -64,8 +64,8 @@ struct FusionResult {
 /// must be finite and both variances positive.
 ///
 /// `same_scan`: a measurement agreed with the cell at most `scan_duration_s` ago. Then two heights
-/// that disagree belong to two surfaces above each other, and the upper one stays. Measurements
-/// that are already one per cell and frame do not need this rule.
+/// that disagree belong to two surfaces above each other, and the upper one stays. Callers that
+/// give one measurement per cell and frame do not need this rule.
 [[nodiscard]] FusionResult fuse(const FusionConfig& config,
                                 const Height& cell,
                                 const Height& measured,

@@ -56,7 +56,7 @@ class HeightResiduals {
         double min_drift_m = 0.0;
     };
     /// Collects residuals from every second cell of every second row. Skips cells that are not
-    /// level: the map two cells aside, along x or y, is unknown or differs by more than `level_m`.
+    /// level: the map two cells away, along x or y, is unknown or differs by more than `level_m`.
     /// Also skips cells that are not finite or have no variance. Returns the number of new
     /// residuals of old cells. Allocates only to grow.
     std::size_t gather(const Input& input);

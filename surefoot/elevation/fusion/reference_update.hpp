@@ -39,10 +39,10 @@ static_assert(sizeof(ReferencePoint) == 16, "the files hold four float32 per poi
 
 /// Elevation update of the reference implementation, for comparison only; the live chain does not
 /// use it. It differs from ElevationMap. Every point updates its cell in file order and in
-/// float32. The gate uses the cell's variance only. A cell beyond the maximum variance becomes
-/// infinite and its next point overwrites it. The first measurement of a cell sets no time, so the
-/// first outlier there always adds noise. Horizontal variances do not act on heights and are left
-/// out.
+/// float32. The gate uses the cell's variance only. A variance above the maximum becomes infinite,
+/// and the next point overwrites the cell. The first measurement of a cell sets no time, so an
+/// outlier right after it always adds noise. Horizontal variances do not act on heights and are
+/// left out.
 ///
 /// Grids are in our order: column = ix along +x, row = iy along +y.
 class ReferenceMap {

@@ -152,7 +152,7 @@ void SensorConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    100.0,
                    "simplified stereo: largest error of a disparity; a quarter of the depth error "
-                   "that follows is one sigma");
+                   "that it causes counts as one sigma");
     visitor.number("simplified_lateral",
                    simplified_lateral,
                    0.0,

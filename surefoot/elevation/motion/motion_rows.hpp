@@ -15,7 +15,7 @@ struct MotionPolynomials {
     float xy[5];
     float first_x_m;  ///< x of the row's first cell, from the body
     float step_m;
-    float body_z_m;  ///< height of the body in odom; z counts from here
+    float body_z_m;  ///< height of the body in odom; z counts from it
 };
 
 /// Adds the variances to those of remembered cells; `horizontal_drift_m` is a sigma. Every

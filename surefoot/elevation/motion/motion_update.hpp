@@ -39,7 +39,7 @@ class MotionNoise {
         double first_x_m = 0.0;
         double y_m = 0.0;
         double step_m = 0.0;
-        double body_z_m = 0.0;  ///< height of the body in odom; heights count from here
+        double body_z_m = 0.0;  ///< height of the body in odom; z of a cell counts from it
     };
     /// Adds the motion's variances to those of remembered cells, in floats. The drift is a sigma.
     /// Every instruction set gives the same bytes. NaN stays NaN.

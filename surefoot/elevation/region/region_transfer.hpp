@@ -17,7 +17,7 @@ class ElevationMap;
     const ElevationMap& map, const std::optional<grid::LatticeBox>& window = std::nullopt);
 
 /// Adds to every cell the uncertainty of a body motion that ended in `T_frame_body`, or of the
-/// region's placement. The region is then relative to that pose. `covariance`: see
+/// region's placement. The uncertainties are then relative to that pose. `covariance`: see
 /// `ElevationMap::follow`. Cells become unknown if their variance or drift leaves the range of a
 /// float. Returns an error and changes nothing if the pose or the covariance is not finite, because
 /// the position of the cells is then unknown.

@@ -9,9 +9,9 @@
 
 namespace surefoot::elevation {
 
-/// Number of pixels that level ground in a cell covers. The cell of area A at the depth z along the
-/// optical axis and h below the camera covers the solid angle A h / r^3. A pixel covers the solid
-/// angle (z / r)^3 / (fx fy). So the number is
+/// Number of pixels that level ground in a cell covers. A cell has the area A, the distance r, the
+/// depth z along the optical axis, and lies h below the camera. It covers the solid angle
+/// A h / r^3, and a pixel covers (z / r)^3 / (fx fy). So the number is
 ///   n = A fx fy h / z^3.
 /// A vertical surface shows more pixels (Oniga and Nedevschi 2010 use this to detect obstacles).
 class ExpectedPoints {

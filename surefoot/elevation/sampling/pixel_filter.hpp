@@ -16,9 +16,9 @@ struct PixelFilterConfig {
     int reach_px = 3;           ///< neighbours left, right, above and below at this distance
     double jump_px = 0.5;       ///< largest difference to the mean of two opposite neighbours
     double jump_sigma = 2.0;    ///< added to jump_px [sigma of the disparity]
-    /// Matchers bridge depth edges with ramps along the line of sight. At 70 deg (`min_points` =
-    /// 3), 2 % of the cells hidden behind drop edges get invented ground. 97 % of the visible floor
-    /// stays (docs/lab/correlated_depth.md).
+    /// Matchers bridge depth edges with ramps along the line of sight. At 70 deg, ten frames of the
+    /// simulated ZED invent ground in 4.3 % of the cells hidden behind drop edges and keep 96.0 %
+    /// of the visible floor (docs/lab/correlated_depth.md).
     double max_incidence_deg = 70.0;
     /// A distant table top is observed at 80-84 deg; without its pixels, the floor under it becomes
     /// the surface. A table top is level; a bridge along the line of sight is not.

@@ -32,7 +32,7 @@ struct PrefilterConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// True if the range passes the filter; NaN does not pass.
+/// True if the filter is off or the range is within its limits. NaN is not within the limits.
 [[nodiscard]] inline bool is_in_range(const PrefilterConfig& config, double range_m) noexcept {
     return !config.range || (range_m >= config.min_range_m && range_m <= config.max_range_m);
 }
@@ -42,8 +42,8 @@ struct PrefilterConfig {
     return config.height ? static_cast<float>(T_odom_body.translation_m.z() + config.min_height_m)
                          : -std::numeric_limits<float>::infinity();
 }
-/// True if a height over base_link passes the upper limit; NaN does not pass. The lower limit acts
-/// on the heights of cells: many points that are too deep show a drop.
+/// True if the filter is off or the height over base_link is within the upper limit (NaN is not).
+/// The lower limit acts on the heights of cells: many points that are too deep show a drop.
 [[nodiscard]] inline bool is_in_height(const PrefilterConfig& config, double over_body_m) noexcept {
     return !config.height || over_body_m <= config.max_height_m;
 }

@@ -19,9 +19,9 @@ struct ViewpointConfig {
 
 /// Remembers the viewpoints from which the ground was observed, so that a standing camera does not
 /// count the same error many times as independent evidence. Poses closer than a quarter of the
-/// limits share an entry, so the limits are not exact. Beyond 1024 entries (1.2 m of straight
-/// travel with the defaults) the oldest entries are dropped and count as far away. No allocation
-/// after construction.
+/// limits share an entry, so the limits are not exact. Beyond 1024 entries (at least 1.2 m of
+/// straight travel with the defaults) the oldest entries are dropped and count as far away. No
+/// allocation after construction.
 class ViewpointHistory {
   public:
     using Id = std::uint32_t;
@@ -29,7 +29,7 @@ class ViewpointHistory {
     static constexpr Id kNever = 0;
 
     explicit ViewpointHistory(const ViewpointConfig& config);
-    /// Sets the pose as the present viewpoint and returns its id. Ids increase.
+    /// Sets the pose as the present viewpoint and returns its id. Ids never decrease.
     Id look_from(const Pose& T_odom_body);
     /// True if the present viewpoint differs from viewpoint `id` by at least a limit of the config.
     [[nodiscard]] bool is_new_since(Id id) const;

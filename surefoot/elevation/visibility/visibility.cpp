@@ -28,7 +28,7 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    10.0,
                    "a line of sight contradicts a cell if it passes more than this distance below "
-                   "the cell height; the value of sigmas is added");
+                   "the cell height; sigmas times the sigma of the cell height is added");
     visitor.number("sigmas",
                    sigmas,
                    0.0,

@@ -52,7 +52,7 @@ class VisibilityCleanup {
 
     VisibilityConfig config_;
     float margin_m_;
-    float hangs_m_;  ///< a surface higher than this above the ground hangs over it
+    float hangs_m_;  ///< a surface that begins higher than this above the ground hangs over it
     float sigmas_;
     grid::GridGeometry geometry_;
     Eigen::Vector3d camera_m_ = Eigen::Vector3d::Zero();

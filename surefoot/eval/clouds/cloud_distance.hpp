@@ -11,9 +11,9 @@
 
 namespace surefoot::eval {
 
-/// Returns the C2C distance [m] from each compared point to the nearest *point* of the reference,
-/// in the order of `compared_m`. Points must be finite, and the reference must not be empty. Even
-/// two clouds of one surface differ by about the point spacing of the reference.
+/// Returns the distance [m] from each compared point to the nearest *point* of the reference (C2C,
+/// cloud to cloud), in the order of `compared_m`. Points must be finite, and the reference must not
+/// be empty. Even two clouds of one surface differ by about the point spacing of the reference.
 [[nodiscard]] std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
                                                    std::span<const Eigen::Vector3f> compared_m,
                                                    Executor& executor = serial());

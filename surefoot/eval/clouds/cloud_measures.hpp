@@ -30,7 +30,7 @@ struct LevelConfig {
     double bin_m = 0.005;
     double least_step_m = 0.04;  ///< smallest distance between two levels
     double least_share = 5e-4;   ///< smallest share of all points in the bin of a level
-    double prominence = 2.0;     ///< least count of a level / median count of the bins around
+    double prominence = 2.0;     ///< least count of a level divided by the median count around it
 };
 
 /// A level surface, or several surfaces at one height.
@@ -49,7 +49,7 @@ struct HeightHistogram {
     std::vector<std::int64_t> counts;
     std::vector<Level> levels;  ///< ascending
 };
-/// Points must be finite. Empty without points, or if the heights span over a million bins.
+/// Points must be finite. Returns no counts without points, or for more than a million bins.
 [[nodiscard]] HeightHistogram height_histogram(std::span<const Eigen::Vector3f> points_m,
                                                const LevelConfig& config = {});
 
@@ -63,12 +63,12 @@ struct Repeated {
 
 /// Dimensions of stairs from their levels and riser faces.
 struct StairMeasures {
-    Repeated riser;  ///< height differences up to 0.30 m between levels of the flight
-    Repeated going;  ///< distances of riser faces, or of the ends of levels in a map without faces;
-                     ///< landings (longer distances) are left out
+    Repeated riser;  ///< height differences up to 0.30 m between successive levels
+    Repeated going;  ///< distances between successive risers, from their faces or (in a map without
+                     ///< faces) from the ends of the levels; only distances of 0.1 to 0.5 m
     Eigen::Vector2d uphill = Eigen::Vector2d::Zero();  ///< unit vector, or zero without two levels
 };
-/// Measures a flight: the longest sequence of levels with one riser (within 8 %). Leaves out other
+/// Measures a flight: the longest sequence of equally spaced levels (within 8 %). Leaves out other
 /// levels, for example patches between two treads or objects beside the stairs. For straight
 /// flights only: measures along one uphill line. `levels`: levels of surfaces.level_m.
 [[nodiscard]] StairMeasures measure_stairs(const SortedSurfaces& surfaces,

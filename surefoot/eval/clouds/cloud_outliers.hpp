@@ -33,7 +33,7 @@ class OutlierFilter {
 
     [[nodiscard]] double mean_m() const noexcept { return mean_m_; }
     [[nodiscard]] double std_m() const noexcept { return std_m_; }
-    /// Largest mean distance of the kept points.
+    /// A point is an outlier if its mean distance to its neighbours is above this limit.
     [[nodiscard]] double limit_m() const noexcept { return limit_m_; }
 
   private:

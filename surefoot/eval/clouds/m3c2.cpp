@@ -89,8 +89,8 @@ void M3c2Config::describe(ConfigVisitor& visitor) {
     visitor.enumeration("normals",
                         normals,
                         kM3c2NormalsNames,
-                        "direction along which the clouds are compared: upwards, or along the "
-                        "normal of the reference surface");
+                        "direction along which the clouds are compared: vertical = along z, "
+                        "pca = along the normal of the reference surface");
     visitor.number("normal_diameter_m",
                    normal_diameter_m,
                    1e-4,

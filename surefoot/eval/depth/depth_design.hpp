@@ -29,7 +29,7 @@ struct DepthDesign {
 /// 1987). One sigma moves the point by the share sigma_d Z / (f b) along the ray, and in height by
 ///   sigma_h = H Z sigma_d / (f b).
 /// Noise limit: 3 sigma of the difference between two such heights, 3 sqrt(2) sigma_h, without
-/// averaging. Pixel limit: the step must cover the matcher's window of 3 rows, 3 L / (f cos(phi)).
+/// averaging. Pixel limit: the step must cover 3 rows of the image: 3 L / (f cos(phi)).
 /// ASSUMPTION: rows near the axis; independent errors of neighbouring pixels. Averaging n pixels
 /// would divide the noise limit by sqrt(n), but the smoothing of a matcher cancels this gain.
 struct ResolvableHeight {

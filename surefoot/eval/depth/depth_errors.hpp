@@ -26,7 +26,7 @@ struct BadPixels {
     double over_2_percent = 0.0;
 };
 
-/// Errors of the pixels with known truth inside the mask. Without such pixels the fields are NaN.
+/// Errors of the pixels with known truth inside the mask. All are NaN (counts: 0) without them.
 struct DepthErrors {
     /// Bad pixels among all counted pixels. Unknown estimates are filled first (see `filled`), so a
     /// matcher gains nothing if it answers only at easy pixels. A pixel that stays unknown counts
@@ -35,7 +35,7 @@ struct DepthErrors {
     BadPixels known_bad;           ///< bad pixels among the counted pixels with a known estimate
     double density_percent = 0.0;  ///< share of the counted pixels with a known estimate
     ErrorFigures known;            ///< estimate minus truth at the known estimates [px]
-    SigmaCoverage coverage;        ///< sigma coverage of the known estimates; empty without sigma
+    SigmaCoverage coverage;        ///< sigma coverage of the known estimates; NaN without sigma
     Sparsification sparsification;
     std::int64_t counted = 0;
     /// Median of truth / estimate where both are known and positive. About 1 if both images are in

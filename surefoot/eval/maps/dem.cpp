@@ -112,17 +112,18 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
         if (!exact) cells[axis] = std::numeric_limits<double>::infinity();
     }
     if (!(cells.x() * cells.y() <= kMostCells)) {
-        return usage_error(fmt::format(
-            "points from ({:g}, {:g}) to ({:g}, {:g}) m need {:g} x {:g} cells of {:g} m, more "
-            "than {:g}: choose a larger resolution, or remove stray points",
-            low_m_.x(),
-            low_m_.y(),
-            high_m_.x(),
-            high_m_.y(),
-            cells.x(),
-            cells.y(),
-            resolution_m,
-            kMostCells));
+        return usage_error(
+            fmt::format("points from ({:g}, {:g}) to ({:g}, {:g}) m need {:g} x {:g} cells of {:g} "
+                        "m; the limit is {:g} cells: choose larger cells (resolution), or "
+                        "remove stray points",
+                        low_m_.x(),
+                        low_m_.y(),
+                        high_m_.x(),
+                        high_m_.y(),
+                        cells.x(),
+                        cells.y(),
+                        resolution_m,
+                        kMostCells));
     }
     // in range: each is at least 1, and their product at most kMostCells
     geometry.nx = static_cast<int>(cells.x());

@@ -19,7 +19,7 @@ enum class Reduce : std::uint8_t { max, mean, min };
 enum class Lattice : std::uint8_t {
     cell,  ///< borders at multiples of the resolution (NOTATION.md), so maps align
     node,  ///< first centre at the smallest x and y (CloudCompare: RASTERIZE); a point belongs to
-           ///< the nearest centre, halfway to the centre with the greater coordinate
+           ///< the nearest centre, at equal distance to the one with the greater coordinate
 };
 
 /// The cells of a height map.

@@ -15,12 +15,12 @@ struct SheetLayer {
 };
 
 /// Style of a layer of the map or of its rating, by its name in files. Give "variance" as one sigma
-/// in m; it is shown in mm. A layer of any other name is shown as plain numbers.
+/// in m; it is shown in mm. A layer of unknown name is shown as plain numbers.
 [[nodiscard]] LayerStyle style_of_layer(std::string_view name, double safe_threshold);
 
 /// Draws layers of one map side by side, `columns` in a row, each with its own legend. x forward is
-/// up, y left is left, unknown is hatched grey. Shows the cells that a layer knows and the cells of
-/// the path, with a margin. Draws the path on the first map. Empty picture without a layer.
+/// up, y left is left, unknown cells are hatched. Shows the cells that a layer knows and the cells
+/// of the path, with a margin. Draws the path on the first map. Empty picture without a layer.
 [[nodiscard]] Picture render_layer_sheet(const grid::GridGeometry& geometry,
                                          const std::vector<SheetLayer>& layers,
                                          int columns,

@@ -84,14 +84,13 @@ void EvalMapsConfig::describe(ConfigVisitor& visitor) {
                    edge_step_m,
                    0.0,
                    10.0,
-                   "smallest difference between the true heights of neighbouring cells that counts "
-                   "as an edge");
+                   "a larger difference between the true heights of neighbouring cells is an edge");
     visitor.integer("edge_margin_cells",
                     edge_margin_cells,
                     0,
                     100,
-                    "margin around edges, in cells; cells within this margin do not count in the "
-                    "height errors");
+                    "margin around edges, in cells; results that use only cells away from edges, "
+                    "for example elevation_away_from_edges, leave out cells within this margin");
     visitor.number(
         "large_error_m",
         large_error_m,

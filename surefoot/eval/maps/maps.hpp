@@ -12,7 +12,7 @@ namespace surefoot::eval {
 struct EvalMapsConfig {
     double safe_threshold = 0.80;  ///< least traversability of a safe cell
     double edge_step_m = 0.03;     ///< a larger jump between true neighbouring heights is an edge
-    int edge_margin_cells = 2;     ///< cells at most this far from an edge are left out
+    int edge_margin_cells = 2;     ///< away_from_edges omits cells at most this far from an edge
     double large_error_m = 0.05;   ///< error limit of share_over_50mm
     void describe(ConfigVisitor& visitor);
 };

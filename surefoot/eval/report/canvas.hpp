@@ -37,12 +37,12 @@ struct TextStyle {
     bool halo = false;    ///< white edge around text on a map
 };
 
-/// Rounds a position to a whole number. Positions far outside all pictures become +-10^9 px, and
+/// Rounds a position to a whole number. Positions far outside all pictures become +-2^30 px, and
 /// NaN becomes 0.
 [[nodiscard]] int nearest_px(double place_px) noexcept;
 
-/// Returns the text width [px]. Text is printable ASCII; any other character appears as '?'. All
-/// drawing is anti-aliased and clipped at the border of the picture.
+/// Returns the text width [px]. Text is printable ASCII; any other character appears as '?'. Text,
+/// lines, polygons and circles are anti-aliased. All drawing is clipped at the picture's border.
 [[nodiscard]] double text_width_px(const std::string& text, const TextStyle& style);
 /// `at` is the anchor of the text, at half the height of its capital letters.
 void draw_text(Picture& picture, PointPx at, const std::string& text, const TextStyle& style);

@@ -45,7 +45,7 @@ struct ColorScale {
     [[nodiscard]] Rgb8 operator()(double value) const;
 };
 
-/// The fixed colours of all pictures and reports. Colours with a meaning: Okabe and Ito 2008.
+/// Fixed colours of pictures and reports. Colours with a meaning: Okabe and Ito 2008.
 namespace palette {
 inline constexpr Rgb8 kInk{28, 30, 34};
 inline constexpr Rgb8 kSoftInk{96, 100, 108};

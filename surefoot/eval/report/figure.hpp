@@ -40,8 +40,8 @@ struct ColumnSize {
     int width_px = 0;
     int height_px = 0;
 };
-/// `with_axes` leaves room for tick labels left of and below the plot. A plot that is lower than
-/// the legend column is centred beside the column.
+/// `with_axes` leaves room for tick labels left of and below the plot. A plot that is less
+/// high than the legend column is centred beside the column.
 [[nodiscard]] Figure make_figure(int plot_width_px,
                                  int plot_height_px,
                                  bool with_axes,
@@ -68,7 +68,7 @@ struct ColorBar {
     std::string low_word;  ///< word beside the part below the centre, e.g. "unsafe"
     std::string high_word;
 };
-/// Draws the bar above room for `key_rows` entries; returns the picture row [px] below the bar.
+/// Draws the bar; leaves room for `key_rows` entries. Returns the picture row [px] below the bar.
 int draw_color_bar(Figure& figure, const ColorBar& bar, int key_rows);
 
 enum class Symbol : std::uint8_t { hatch, body, line, ticked_line, outline, mark, square, none };

@@ -67,7 +67,7 @@ struct ReportContent {
     std::vector<ReportPicture> pictures;
     std::vector<ReportSection> sections;  ///< shown after the pictures
     std::vector<KeyFigure> figures;
-    std::vector<std::string> reasons;  ///< sentences: why a part is missing or refused
+    std::vector<std::string> reasons;  ///< sentences: missing parts, refusals, advice, notes
     std::vector<StageTiming> stages;
     std::vector<double> frame_ms;  ///< total time of all stages of each frame
     double frame_limit_ms = 0.0;   ///< time between two frames; 0 = unknown

@@ -133,7 +133,7 @@ std::vector<KeyEntry> confusion_key() {
             entry(Call::true_unsafe, "unsafe, rightly"),
             entry(Call::false_safe, "called safe, is NOT safe"),
             entry(Call::false_unsafe, "called unsafe, is safe"),
-            {Symbol::square, palette::kFaint, "not in the live map", {}},
+            {Symbol::square, palette::kFaint, "unknown in the live map", {}},
             {Symbol::hatch, {}, "no truth", {}}};
 }
 

@@ -72,8 +72,8 @@ struct LayerStyle {
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// Draws the colours of render_confusion without title, axes and legend. Shows the cells that both
-/// maps know, and the path, at least `kThumbnailCells` wide and high. Empty without such cells.
+/// Draws only the map of render_confusion. Shows the cells that both maps know, and the path, but
+/// at least `kThumbnailCells` (or the whole map) along each axis. Empty without such cells.
 inline constexpr int kThumbnailCells = 80;
 [[nodiscard]] Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
                                                  const Image<Call>& calls,
@@ -83,7 +83,7 @@ inline constexpr int kThumbnailCells = 80;
 inline constexpr const char* kConfusionLegend =
     "White cells are safe according to the map, black cells unsafe. Green dot: the map is right. "
     "Blue dot on white: the map says safe, but it is NOT safe. Orange dot on black: the map says "
-    "unsafe, but it is safe. Grey cells are not in the live map.";
+    "unsafe, but it is safe. Grey cells are unknown in the live map.";
 
 [[nodiscard]] Picture render_camera_image(const GreyImage& image, const FigureText& text);
 

@@ -25,7 +25,7 @@ struct HealthSample {
 [[nodiscard]] std::string escaped(const std::string& text);
 
 /// Inline SVG drawings without script or external resource. Colours come from the page's style
-/// sheet (classes axis, label, value, median, tail, line, second, limit, ok, degraded, lost).
+/// sheet (classes axis, label, value, median, tail, line, second, limit, mark, ok, degraded, lost).
 
 /// Draws one bar per stage: solid to the median, thin to the 99th percentile. Leaves out stages
 /// without samples. Returns an empty string if no stage has samples.

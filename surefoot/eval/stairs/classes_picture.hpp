@@ -6,13 +6,13 @@
 
 namespace surefoot::eval {
 
-/// Returns the colour of a class, for all common kinds of colour vision: hues of Okabe and Ito
-/// (2008). Classes that meet on the ground (floor, kerb, drop; tread, riser) also differ in
-/// lightness. Danger is warm, standing objects are dark. Unknown has no colour but hatching.
+/// Returns the colour of a class. Most hues are those of Okabe and Ito (2008), for all common kinds
+/// of colour vision. Classes that meet on the ground (floor, kerb, drop; tread, riser) also differ
+/// in lightness. Kerbs and drops are warm, walls are dark. Pictures show unknown cells hatched.
 [[nodiscard]] Rgb8 color_of(stairs::GroundClass name);
 
 /// Draws the ground class of each cell, with the area of each class in the legend. Shows the known
-/// cells and the overlays, with some cells around them.
+/// cells and the overlays (marks, path, body), with some cells around them.
 [[nodiscard]] Picture render_classes(const grid::GridGeometry& geometry,
                                      const grid::Layer& height_m,
                                      const stairs::GroundClasses& classes,

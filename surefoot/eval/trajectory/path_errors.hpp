@@ -21,11 +21,11 @@ struct PathError {
 inline const std::vector<double> kPathLengths_m = {0.1, 0.5, 1.0, 2.0, 5.0};
 
 /// Relative pose errors over path lengths (Sturm et al. 2012, over metres instead of seconds). A
-/// stretch starts at every matched pose. It ends at the later pose whose true path length from the
-/// start is nearest to `length_m` (ties: the earliest). A stretch differs from `length_m` by at
-/// most a tenth. evo uses the same rules for `evo_rpe --delta M --delta_unit m --all_pairs
-/// --pairs_from_reference` with its default tolerance. The error of a stretch is relative_error, so
-/// alignment has no effect. `pairs`: as in TrajectoryErrors. Lengths must be above 0.
+/// stretch may start at every matched pose. It ends at the later pose whose true path length from
+/// the start is nearest to `length_m` (ties: the earliest), if it differs by at most a tenth. evo
+/// uses the same rules for `evo_rpe --delta M --delta_unit m --all_pairs --pairs_from_reference`
+/// with its default tolerance. The error of a stretch is relative_error, so alignment has no
+/// effect. `pairs`: as in TrajectoryErrors. Lengths must be above 0.
 [[nodiscard]] std::vector<PathError> errors_over_path(const Trajectory& estimate,
                                                       const Trajectory& truth,
                                                       const std::vector<PosePair>& pairs,

@@ -69,7 +69,7 @@ struct TrajectoryErrors {
 
 /// Compares an estimated trajectory with the truth; both give poses of the same body. If the truth
 /// has no stamps (KITTI), the caller first assigns the stamps of the estimate. Errors: a pose is
-/// not finite; too few poses match (3 for se3, else 2); no pairs are rpe_interval_s apart.
+/// not finite; fewer than 3 poses match (2 for yaw and none); no pairs are rpe_interval_s apart.
 [[nodiscard]] Result<TrajectoryErrors> evaluate_trajectory(const Trajectory& estimate,
                                                            const Trajectory& truth,
                                                            const EvalTrajectoryConfig& config);

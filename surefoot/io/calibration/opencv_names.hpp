@@ -6,7 +6,7 @@
 #include "surefoot/io/settings/yaml_tree.hpp"
 
 /// Finds the matrices of a stereo calibration in an OpenCV file; private to the rig readers.
-/// cv::FileStorage lets the writer choose the names, so every tutorial uses other names.
+/// cv::FileStorage lets the writer choose the names, so tutorials use different names.
 namespace surefoot::io {
 
 /// Value of a key, and the key itself ("left.K" for a key inside a group).

@@ -55,7 +55,7 @@ camera::CameraModel read_model(YamlReader& yaml) {
         if (count != 4 && distortion_node != nullptr) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
-                      fmt::format("{} numbers; the equidistant model has 4", count));
+                      fmt::format("found {} numbers; the equidistant model has 4", count));
         }
         return make_kannala_brandt(k, coefficients);
     }
@@ -64,7 +64,8 @@ camera::CameraModel read_model(YamlReader& yaml) {
             yaml.fail(
                 list != nullptr ? *list : *distortion_node,
                 "distortion_coefficients",
-                fmt::format("{} numbers; the radial-tangential model has 4, or 5 with k3", count));
+                fmt::format("found {} numbers; the radial-tangential model has 4, or 5 with k3",
+                            count));
         }
         return make_pinhole(k, coefficients);
     }
@@ -72,7 +73,7 @@ camera::CameraModel read_model(YamlReader& yaml) {
         if (count < 8) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
-                      fmt::format("{} numbers; the rational_polynomial model has 8", count));
+                      fmt::format("found {} numbers; the rational_polynomial model has 8", count));
         }
         if (yaml.error()) return {};
         return lens_or_fail(

@@ -10,8 +10,8 @@
 #include "surefoot/core/result.hpp"
 
 /// Reads rigs from rig.yaml, EuRoC sensor.yaml, KITTI calib.txt, OpenCV calibration files and the
-/// formats of rig_formats.hpp. Every returned rig has passed StereoRig::problem(). Every error
-/// names the file; an error in a key also names line and key.
+/// formats of rig_formats.hpp. Every returned rig has passed StereoRig::problem(). Every error of a
+/// reader names the file; an error in a key names the key and, for most formats, the line.
 namespace surefoot::io {
 
 struct ImageSize {
@@ -29,7 +29,7 @@ struct ImageSize {
 ///          (pinhole: k1 k2 p1 p2 k3; pinhole_rational: k1 k2 p1 p2 k3 k4 k5 k6)
 ///   right: {model: kannala_brandt, ..., coefficients: [k1, k2, k3, k4]}
 ///   T_left_right: 4x4, row by row; rectified: true if the images are rectified
-/// Keys of both forms: name, rate_hz, readout_s, T_body_left, imu: {T_body_imu, rate_hz}.
+/// Both forms: layout, resolution, name, rate_hz, readout_s, T_body_left, imu {T_body_imu, rate_hz}
 [[nodiscard]] Result<camera::StereoRig> parse_rig_yaml(std::string_view text,
                                                        const std::string& file);
 /// Formats a rig in the full form. parse_rig_yaml reads the same rig back (poses to 1e-15).
@@ -80,9 +80,9 @@ struct KittiCalibration {
 
 /// Reads any format above or in rig_formats.hpp: an EuRoC folder (mav0 or its parent), a folder
 /// with ROS's left.yaml and right.yaml or a calibration under its usual name, or a file. `size`
-/// helps formats without an image size and selects the section of a ZED file; other formats ignore
-/// `size`. If an OpenCV file has no R and no T, the keys of extrinsics.yml in the same folder are
-/// added. read_rig_file also returns the notes.
+/// helps formats without an image size, and selects the section of a ZED file and the raw images of
+/// KITTI raw; other formats ignore `size`. If an OpenCV file has no R and no T, the keys of
+/// extrinsics.yml in the same folder are added. read_rig_file also returns the notes.
 [[nodiscard]] Result<camera::StereoRig> read_rig(const std::string& path,
                                                  std::optional<ImageSize> size = {});
 

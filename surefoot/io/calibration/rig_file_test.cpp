@@ -124,7 +124,7 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
     EXPECT_TRUE(
         contains(bad("0.12", "120"), "baseline_m: baseline 120.000 m exceeds 5 m: is it in mm"));
     EXPECT_EQ(bad("[336.0, 188.0]", "[336.0]"),
-              "rig.yaml:6: principal_px: 1 numbers; exactly 2 belong here");
+              "rig.yaml:6: principal_px: found 1 numbers; exactly 2 are needed");
     EXPECT_TRUE(
         contains(bad("baseline_m: 0.12\n", ""), "baseline_m: this key is missing; a camera"));
     EXPECT_TRUE(
@@ -203,7 +203,7 @@ TEST(RigKitti, BadLinesAreNamed) {
         return message(kitti_rig(*calibration, 0, 1, {1226, 370}, "calib.txt"));
     };
     EXPECT_TRUE(contains(bad("P0:" + row), "calib.txt: the line 'P1:' is missing"));
-    EXPECT_TRUE(contains(bad("P0: 1 2 3\n"), "calib.txt:1: P0: 3 numbers; exactly 12"));
+    EXPECT_TRUE(contains(bad("P0: 1 2 3\n"), "calib.txt:1: P0: found 3 numbers; exactly 12"));
     EXPECT_TRUE(contains(bad("P0:" + replaced(row, "700", "nan")), "P0: 'nan' is not a finite"));
     EXPECT_TRUE(contains(bad("P0:" + replaced(row, "700", "-700")), "must be above 0 px"));
     EXPECT_TRUE(contains(bad("P0:" + row + "P1:" + row), "calib.txt: baseline 0.0"));

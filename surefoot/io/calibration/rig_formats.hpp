@@ -60,8 +60,8 @@ struct RigFile {
 /// Reads Kalibr's camchain.yaml: cam0 is the left camera, cam1 the right camera; camera_model
 /// pinhole with radtan (k1 k2 p1 p2), equidistant or none. T_cn_cnm1 maps cam0 into cam1, T_cam_imu
 /// maps the IMU into the camera (OpenVINS stores the inverse, T_imu_cam). The poses of the IMU in
-/// both cameras replace a missing T_cn_cnm1. With an IMU, base_link lies at the left camera, with
-/// body axes. The file has no IMU rate; 200 Hz are assumed.
+/// both cameras replace a missing T_cn_cnm1. With an IMU, base_link lies at the left camera (axes:
+/// T_body_optical). The file has no IMU rate; 200 Hz are assumed.
 [[nodiscard]] Result<RigFile> parse_kalibr_rig(std::string_view text, const std::string& file);
 [[nodiscard]] Result<std::string> format_kalibr_rig(const camera::StereoRig& rig);
 
@@ -83,9 +83,9 @@ struct RosTexts {
 /// Returns "right.yaml" for "left.yaml" (replaces the last "left"); no value without "left".
 [[nodiscard]] std::optional<std::string> ros_partner(const std::string& left_path);
 
-/// Reads Stereolabs' SN<serial>.conf: sections LEFT_CAM_x, RIGHT_CAM_x for each resolution x and
-/// STEREO. Their calibration tool writes Baseline = -T.x, TY = T.y, TZ = T.z [mm] and the rotation
-/// vector (RX, CV or RY, RZ). With x_right = R x_left + T, T.x is negative and Baseline is
+/// Reads Stereolabs' SN<serial>.conf: the section STEREO, and LEFT_CAM_x and RIGHT_CAM_x for each
+/// resolution x. Their calibration tool writes Baseline = -T.x, TY = T.y, TZ = T.z [mm] and the
+/// rotation vector (RX, CV or RY, RZ). With x_right = R x_left + T, T.x is negative and Baseline is
 /// positive. A complete LEFT_DISTO or RIGHT_DISTO replaces the lens of every section of this
 /// camera: eight coefficients (rational), or k1 .. k4 alone (fisheye). Thin-prism terms s1 .. s4
 /// other than 0 are refused. `size` selects the section; a file of one resolution needs no `size`.

@@ -285,14 +285,16 @@ TEST(RigKalibr, BadValuesNameFileAndKey) {
          "'ds' is not supported; calibrate with pinhole"},
         {"cam1:", "camera1:", "key 'cam1' is missing"},
         {"T_cn_cnm1:", "T_cn:", "key 'T_cn_cnm1' is missing"},
-        {"461.629, 460.152, 362.680", "461.629, 460.152", "cam0.intrinsics: 3 numbers; exactly 4"},
+        {"461.629, 460.152, 362.680",
+         "461.629, 460.152",
+         "cam0.intrinsics: found 3 numbers; exactly 4"},
         {"461.629", ".nan", "cam0.intrinsics: nan is outside"},
         {"461.629",
          "0.0",
          "c.yaml:3: cam0.intrinsics: focal lengths 0 and 460.152 must be above 0"},
         {"461.629", "'461,6'", "'461,6' is not a number"},
         {"radtan", "fov", "'fov' is not one of radtan | equidistant | none"},
-        {"-0.27695497, ", "", "cam0.distortion_coeffs: 3 numbers; exactly 4"},
+        {"-0.27695497, ", "", "cam0.distortion_coeffs: found 3 numbers; exactly 4"},
         {"[ 1.0, 0.0, 0.0, -0.11]",
          "[ 1.1, 0.0, 0.0, -0.11]",
          "cam1.T_cn_cnm1: not a rigid motion"},
@@ -353,7 +355,7 @@ TEST(RigRos, BadValuesNameFileAndKey) {
         {"image_width", "image_wide", "key 'image_width' is missing"},
         {"410.", "0.", "r.yaml:4: camera_matrix: focal lengths 0 and 411 must be above 0"},
         {"410.", ".nan", "camera_matrix: nan is outside"},
-        {"410., ", "", "camera_matrix: 8 numbers; at least 9"},
+        {"410., ", "", "camera_matrix: found 8 numbers; at least 9"},
         {"410.", "'410,5'", "'410,5' is not a number"},
         {"plumb_bob", "thin_prism", "'thin_prism' is not one of plumb_bob"},
         {"-0.002, 0.]", "-0.002, 0., 7e-3]", "6 numbers; plumb_bob has 4 or 5"},
@@ -453,7 +455,9 @@ TEST(RigZed, NewFilesKeepTheLensApart) {
     ASSERT_TRUE(file.ok()) << message(file);
     EXPECT_EQ(std::get<camera::PinholeRational>(file->rig.left.model).k6, 0.012);
     EXPECT_EQ(std::get<camera::PinholeRadTan>(file->rig.right->model).k1, -0.172795);
-    EXPECT_EQ(file->notes[0], "[RIGHT_DISTO] is incomplete and is left out");
+    EXPECT_EQ(file->notes[0],
+              "[RIGHT_DISTO] is left out: it has neither all of k1 k2 p1 p2 k3 k4 k5 k6 nor only "
+              "k1 k2 k3 k4");
 }
 
 TEST(RigZed, NamesInAnyCaseCommentsAndTheOtherSpelling) {

@@ -42,7 +42,7 @@ camera::CameraModel read_lens(YamlReader& yaml, const YamlNode& node, const std:
     std::vector<double> D = yaml.any_numbers(*list, key, 14);
     drop_zero_tail(D, 4);
     if (D.size() != 4)
-        yaml.fail(*list, key, fmt::format("{} numbers; exactly 4 belong here", D.size()));
+        yaml.fail(*list, key, fmt::format("found {} numbers; exactly 4 are needed", D.size()));
     if (yaml.error()) return {};
     return lens_or_fail(
         yaml,

@@ -18,7 +18,7 @@ Result<std::array<double, 12>> parse_matrix(const std::vector<std::string_view>&
                                             const std::string& where) {
     if (words.size() != 13) {
         return input_error(fmt::format(
-            "{}: {} {} numbers; exactly 12 belong here", where, words[0], words.size() - 1));
+            "{}: {} found {} numbers; exactly 12 are needed", where, words[0], words.size() - 1));
     }
     std::array<double, 12> P{};
     for (std::size_t i = 0; i < 12; ++i) {

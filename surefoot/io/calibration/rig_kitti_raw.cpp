@@ -47,7 +47,7 @@ class RawLines {
         if (found == values_.end()) {
             fail(fmt::format("{}: the line '{}:' is missing or holds no numbers", file_, name));
         } else if (found->second.numbers.size() != count) {
-            fail(fmt::format("{}:{}: {}: {} numbers; exactly {} belong here",
+            fail(fmt::format("{}:{}: {}: found {} numbers; exactly {} are needed",
                              file_,
                              found->second.line,
                              name,

@@ -34,7 +34,7 @@ TEST(RigVariants, KittiRawIsRead) {
     EXPECT_TRUE(
         contains(message(parse_rig_file(
                      replaced(kKittiRaw, "S_rect_00: 1.242000e+03", "S_rect_00:"), "c.txt")),
-                 "S_rect_00: 1 numbers; exactly 2"));
+                 "S_rect_00: found 1 numbers; exactly 2"));
     EXPECT_TRUE(contains(message(parse_rig_file(
                              "calib_time: 25-May-2012\nR: 1 0 0 0 1 0 0 0 1\nT: 0 0 0\n", "i.txt")),
                          "laser scanner or the IMU; give calib_cam_to_cam.txt"));

@@ -24,7 +24,7 @@ Result<camera::CameraModel> pinhole_lens(const std::vector<double>& intrinsics,
                                          std::vector<double> coefficients) {
     drop_zero_tail(coefficients, 0);
     if (coefficients.size() > kRationalCount + kUnsupported.size()) {
-        return input_error(fmt::format("{} coefficients; at most {} belong here",
+        return input_error(fmt::format("found {} coefficients; at most {} are allowed",
                                        coefficients.size(),
                                        kRationalCount + kUnsupported.size()));
     }
@@ -45,9 +45,8 @@ Result<camera::CameraModel> fisheye_lens(const std::vector<double>& intrinsics,
                                          std::vector<double> coefficients) {
     drop_zero_tail(coefficients, 4);
     if (coefficients.size() != 4) {
-        return input_error(
-            fmt::format("{} coefficients; a fisheye lens has 4 coefficients (k1 k2 k3 k4)",
-                        coefficients.size()));
+        return input_error(fmt::format("found {} coefficients; a fisheye lens has 4 (k1 k2 k3 k4)",
+                                       coefficients.size()));
     }
     return make_kannala_brandt(intrinsics, std::move(coefficients));
 }

@@ -22,7 +22,7 @@ void drop_zero_tail(std::vector<double>& coefficients, std::size_t count);
 /// here has such terms.
 [[nodiscard]] Result<camera::CameraModel> pinhole_lens(const std::vector<double>& intrinsics,
                                                        std::vector<double> coefficients);
-/// Builds a Kannala-Brandt lens from exactly four coefficients (trailing zeros are ignored).
+/// Builds a Kannala-Brandt lens from exactly four coefficients; ignores zeros after the fourth.
 [[nodiscard]] Result<camera::CameraModel> fisheye_lens(const std::vector<double>& intrinsics,
                                                        std::vector<double> coefficients);
 

@@ -51,7 +51,7 @@ class MiddleburyReader {
             values.push_back(value.value_or(0.0));
         }
         if (values.size() != count) {
-            fail(fmt::format("{}:{}: {}: {} numbers; exactly {} belong here",
+            fail(fmt::format("{}:{}: {}: found {} numbers; exactly {} are needed",
                              file_,
                              found->second.line,
                              key,

@@ -85,10 +85,10 @@ std::vector<double> read_rotation(YamlReader& yaml, const NamedNode& named, RigF
         return row_major(exp_so3({R[0], R[1], R[2]}).toRotationMatrix());
     }
     if (R.size() != 9) {
-        yaml.fail(
-            *named.node,
-            named.key,
-            fmt::format("{} numbers; a rotation matrix has 9, a rotation vector 3", R.size()));
+        yaml.fail(*named.node,
+                  named.key,
+                  fmt::format("found {} numbers; a rotation matrix has 9, a rotation vector 3",
+                              R.size()));
         R.resize(9, 0.0);
     }
     return R;

@@ -110,7 +110,7 @@ TEST(RigVariants, OpenCvSizeRotationAndLens) {
     EXPECT_LT(difference(turned->rig.T_left_right, matrix->rig.T_left_right).norm(), 1e-12);
     EXPECT_TRUE(has_note(turned, "read as a rotation vector"));
     EXPECT_TRUE(contains(message(opencv(replaced(opencv_file(kUsualNames), kR, "[0, 1, 0, 0]"))),
-                         "R: 4 numbers; a rotation matrix has 9, a rotation vector 3"));
+                         "R: found 4 numbers; a rotation matrix has 9, a rotation vector 3"));
 
     const std::string D = "[ -0.17, 0.03, 0.001, -0.0005, 0 ]";
     const auto with_D = [&](const char* text) {

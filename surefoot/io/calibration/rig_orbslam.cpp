@@ -84,7 +84,7 @@ Pose read_matrix_pose(YamlReader& yaml, const YamlNode& node, const char* key) {
     std::vector<double> rows = read_matrix(yaml, node, key, 12, 16);
     if (rows.size() == 12) rows.insert(rows.end(), {0.0, 0.0, 0.0, 1.0});
     if (rows.size() != 16)
-        yaml.fail(node, key, fmt::format("{} numbers; a pose has 12 or 16", rows.size()));
+        yaml.fail(node, key, fmt::format("found {} numbers; a pose has 12 or 16", rows.size()));
     return yaml.error() ? Pose{} : pose_from_rows(yaml, node, key, rows);
 }
 

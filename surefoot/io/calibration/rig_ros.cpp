@@ -82,9 +82,9 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
         if (D.size() >= min && D.size() <= max) return;
         yaml.fail(list,
                   keys.D,
-                  min == max
-                      ? fmt::format("{} numbers; {} has {}", D.size(), model, max)
-                      : fmt::format("{} numbers; {} has {} or {}", D.size(), model, min, max));
+                  min == max ? fmt::format("found {} numbers; {} has {}", D.size(), model, max)
+                             : fmt::format(
+                                   "found {} numbers; {} has {} or {}", D.size(), model, min, max));
     };
     if (model == "none") return make_pinhole(k, {});
     if (model == "equidistant" || model == "fisheye") {

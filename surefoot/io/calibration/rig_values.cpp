@@ -222,7 +222,7 @@ std::vector<double> read_matrix(YamlReader& yaml,
     if (data != nullptr) values = yaml.any_numbers(*data, key, max);
     if (values.size() < min) {
         yaml.fail(
-            node, key, fmt::format("{} numbers; at least {} belong here", values.size(), min));
+            node, key, fmt::format("found {} numbers; at least {} are needed", values.size(), min));
         values.resize(min, 0.0);
     }
     return values;
@@ -284,7 +284,8 @@ void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
     out.rig.imu =
         camera::ImuMount{*out.rig.T_body_left * T_left_imu, known ? rate_hz : kAssumedImuRate_hz};
     out.notes.push_back(
-        fmt::format("{}base_link has its origin at the left camera, with the axes of the body",
+        fmt::format("{}base_link lies at the left camera: x points along its optical axis, y to "
+                    "the left, z up in the image",
                     known ? ""
                           : fmt::format("the file has no rate of the IMU: {} Hz is assumed; ",
                                         kAssumedImuRate_hz)));

@@ -80,8 +80,8 @@ struct RectifiedMatrices {
 [[nodiscard]] Result<RigFile> opencv_rig(const YamlNode& root,
                                          const std::string& file,
                                          std::optional<ImageSize> size);
-/// Mounts an IMU whose pose in the left camera is known. base_link lies at the left camera, with
-/// body axes. `rate_hz` 0 means unknown: assumes 200 Hz and adds a note.
+/// Mounts an IMU whose pose in the left camera is known. base_link lies at the left camera (axes:
+/// T_body_optical). `rate_hz` 0 means unknown: assumes 200 Hz. Adds a note about this.
 void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out);
 
 /// Returns the rig, the error of the reader, or the problem of the rig with the file name.

@@ -79,9 +79,10 @@ camera::Camera read_camera(YamlReader& yaml,
         drop_zero_tail(coefficients, count);
         const bool four = count == 5 && coefficients.size() == 4;  // without k3
         if (!coefficients.empty() && coefficients.size() != count && !four) {
-            yaml.fail(*list,
-                      name + ".coefficients",
-                      fmt::format("{} numbers; {} has {}", coefficients.size(), model_name, count));
+            yaml.fail(
+                *list,
+                name + ".coefficients",
+                fmt::format("found {} numbers; {} has {}", coefficients.size(), model_name, count));
         }
     }
     camera.model = fisheye    ? make_kannala_brandt(intrinsics, coefficients)

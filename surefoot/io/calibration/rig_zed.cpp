@@ -150,7 +150,9 @@ camera::CameraModel read_lens(ZedReader& zed,
         return lens_or_fail(zed, lens, fisheye_lens(k, read(lens, kFisheyeKeys)));
     }
     if (zed.ini().find(lens) != nullptr) {
-        out.notes.push_back(fmt::format("[{}] is incomplete and is left out", lens));
+        out.notes.push_back(fmt::format(
+            "[{}] is left out: it has neither all of k1 k2 p1 p2 k3 k4 k5 k6 nor only k1 k2 k3 k4",
+            lens));
     }
     return make_pinhole(k,
                         {zed.number(section, "k1"),

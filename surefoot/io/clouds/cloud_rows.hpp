@@ -19,7 +19,7 @@ struct CloudRows {
 };
 
 /// Detects the rows from the first bytes of a file of `size` bytes. Returns no value if the file is
-/// damaged or its points are not such rows (text, compressed PCD, lists in PLY).
+/// damaged or its points are not such rows (text, compressed PCD, PLY vertices with lists).
 [[nodiscard]] std::optional<CloudRows> ply_rows(std::string_view head, std::uint64_t size);
 [[nodiscard]] std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size);
 [[nodiscard]] std::optional<CloudRows> las_rows(std::string_view head, std::uint64_t size);

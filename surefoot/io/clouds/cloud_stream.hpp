@@ -14,8 +14,8 @@
 namespace surefoot::io {
 
 /// Reads the points of a cloud file block by block, for clouds larger than the memory. Binary PLY
-/// and PCD, LAS, and text with one point per line are read in pieces. All other files of read_cloud
-/// are read whole: VTK, text PLY and PCD, compressed PCD, PLY with lists.
+/// and PCD, LAS, and text with one point per line are read in pieces. Other files of read_cloud are
+/// read whole, such as VTK, text PLY and PCD, compressed PCD, and PLY vertices with lists.
 class CloudStream {
   public:
     [[nodiscard]] static Result<CloudStream> open(const std::string& path);
@@ -39,7 +39,7 @@ class CloudStream {
             if (Status status = use(*block); !status) return status;
         }
     }
-    /// Returns the number of points, if the file states the number.
+    /// Returns the number of points; no value for text with one point per line.
     [[nodiscard]] std::optional<std::uint64_t> points() const;
     /// Returns notes about contents of the file that the blocks do not keep, one sentence each. The
     /// notes cover the part that is read so far. PointCloud::notes of a block is empty.

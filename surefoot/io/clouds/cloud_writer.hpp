@@ -10,8 +10,8 @@
 namespace surefoot::io {
 
 /// Writes a cloud file block by block: .ply, .pcd (both binary), or .xyz .asc .txt .csv as text.
-/// The file grows beside its target ("F.ply.part") and is renamed when it is finished. An
-/// unfinished file is removed.
+/// The file grows beside its target ("F.ply.part") and is renamed when it is finished. The
+/// destructor removes an unfinished file.
 class CloudWriter {
   public:
     /// Fails on an unknown extension and on errors of the operating system.

@@ -207,7 +207,8 @@ std::vector<std::string> notes_of(const Header& header,
     if (format.waves != 0) notes.emplace_back("the wave packets of the LAS points are not kept");
     if (header.record_bytes > format.bytes)
         notes.emplace_back("the extra bytes of the LAS points are not kept");
-    if (wide_colours) notes.emplace_back("only 8 of the 16 bits of the LAS colours are kept");
+    if (wide_colours)
+        notes.emplace_back("only the upper 8 of the 16 bits of the LAS colours are kept");
     return notes;
 }
 

@@ -347,7 +347,8 @@ Status collect_ascii(const Header& header, const std::string& file, Collector& o
                 return at_line(file,
                                number,
                                parse_value(words[w])
-                                   ? fmt::format("{} does not fit the field {} of type {}{}",
+                                   ? fmt::format("{} does not fit the field {} of type {}{}; "
+                                                 "correct the value, or TYPE and SIZE of the field",
                                                  quoted(words[w]),
                                                  quoted(field.name),
                                                  field.type,
@@ -441,7 +442,8 @@ Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file) {
         data = unpacked;
     } else if (needed > data.size() + 1) {
         return input_error(
-            fmt::format("{}: truncated PCD: {} points need {} bytes, but only {} follow the header",
+            fmt::format("{}: truncated PCD: {} points need {} bytes, but only {} follow the "
+                        "header; copy the file again",
                         file,
                         *header->points,
                         needed,

@@ -313,13 +313,13 @@ bool skip_element(ValueReader& values, const Element& element) {
 }
 
 Error too_short(const std::string& file, const Element& element, std::size_t bytes) {
-    return input_error(
-        fmt::format("{}: truncated or damaged PLY: the header announces {} '{}', but {} bytes of "
-                    "data are too few; copy the file again",
-                    file,
-                    element.count,
-                    element.name,
-                    bytes));
+    return input_error(fmt::format(
+        "{}: truncated or damaged PLY: the header announces {} '{}', but the file has only "
+        "{} bytes of data; copy the file again",
+        file,
+        element.count,
+        element.name,
+        bytes));
 }
 
 Result<PointCloud> read_vertices(const Element& vertex,
@@ -340,8 +340,8 @@ Result<PointCloud> read_vertices(const Element& vertex,
     for (std::uint64_t i = 0; i < vertex.count; ++i) {
         if (read_vertex(values, vertex, *targets, coloured, cloud)) continue;
         return input_error(
-            fmt::format("{}: PLY vertex {} of {} is cut off, is not a number, or does not fit the "
-                        "type of its property",
+            fmt::format("{}: PLY vertex {} of {}: the file ends here, or a value is not a number "
+                        "or does not fit the type of its property",
                         file,
                         i,
                         vertex.count));

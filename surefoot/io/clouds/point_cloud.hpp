@@ -57,7 +57,7 @@ struct CloudFormat {
                                const CloudFormat& format = {});
 
 /// Parses PCD 0.5 to 0.7: ascii, binary, binary_compressed (LZF). Padding and fields with COUNT
-/// other than 1 are skipped. Accepts X Y Z, COLUMNS as FIELDS, and a missing WIDTH.
+/// other than 1 are skipped. Accepts X Y Z, COLUMNS in place of FIELDS, and a missing WIDTH.
 [[nodiscard]] Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file);
 [[nodiscard]] std::string format_pcd(const PointCloud& cloud, const CloudFormat& format = {});
 [[nodiscard]] Status write_pcd(const std::string& path,

@@ -40,11 +40,13 @@ std::uint32_t crc32(std::string_view bytes) noexcept {
 Result<ImageHeader> checked_size(ImageHeader header, const std::string& file) {
     const std::int64_t pixels = std::int64_t{header.width} * header.height;
     if (header.width <= 0 || header.height <= 0 || pixels > kMaxImagePixels) {
-        return input_error(fmt::format("{}: image size {} x {} is outside 1 x 1 to {} pixels",
-                                       file,
-                                       header.width,
-                                       header.height,
-                                       kMaxImagePixels));
+        return input_error(
+            fmt::format("{}: image size {} x {} px is not allowed: at least 1 x 1 px and at most "
+                        "{} pixels in all",
+                        file,
+                        header.width,
+                        header.height,
+                        kMaxImagePixels));
     }
     return header;
 }

@@ -28,7 +28,10 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         return input_error(
             file + ": this is a colour PFM; a disparity image must have one channel ('Pf')");
     }
-    if (!bytes.starts_with("Pf")) return input_error(file + ": not a PFM file ('Pf' expected)");
+    if (!bytes.starts_with("Pf"))
+        return input_error(
+            file +
+            ": not a PFM file: it must begin with 'Pf'. Convert the image to PFM with one channel");
     constexpr std::size_t kLongestHeader = 256;
     WordReader words(bytes.substr(2, kLongestHeader));
     const std::string_view width_word = words.next();

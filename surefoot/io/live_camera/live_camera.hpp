@@ -51,8 +51,8 @@ struct LiveAddress {
 /// * Stamps are `CLOCK_MONOTONIC`, in the middle of the exposure of the middle row:
 ///       start-of-exposure stamps:  t + exposure / 2 + readout / 2
 ///       end-of-frame stamps:       t - exposure / 2 - readout / 2
-///   `exposure` is the configured or manual value of the camera. An automatic exposure is unknown
-///   and counts as 0, so that stamps can be off by up to half an exposure.
+///   `t` is the driver's stamp. `exposure` is `exposure_ms`, or else the camera's manual value. An
+///   unknown (automatic) exposure counts as 0; stamps can then be off by half an exposure.
 /// * A device that disappears or is silent for `timeout_s` is closed and reopened until frames come
 ///   or `reconnect_s` has passed. These times are sums of the waits: the library reads no
 ///   clock.
@@ -89,10 +89,10 @@ class LiveCamera final : public camera::FrameSource {
     [[nodiscard]] Status set_controls(V4l2Device& device) const;
     [[nodiscard]] Result<std::optional<VideoBuffer>> newest();
     void count_silence();
-    /// Returns the exposure in ns; 0 = unknown, because the camera controls it.
+    /// Returns the exposure in ns; 0 = unknown (automatic, or not readable).
     [[nodiscard]] std::int64_t known_exposure_ns(V4l2Device& device) const;
     void count_sequence(const VideoBuffer& buffer);
-    /// Converts the image to a frame. Counts damaged images and returns no value for them.
+    /// Converts the image to a frame. No value if it is unusable; an error after too many in a row.
     [[nodiscard]] Result<std::optional<StereoFrame>> frame_of(const VideoBuffer& buffer);
     [[nodiscard]] Result<GreyImage> decode(const VideoBuffer& buffer) const;
     [[nodiscard]] std::int64_t middle_of_exposure_ns(const VideoBuffer& buffer) const;

@@ -23,7 +23,7 @@ struct VideoMode {
     double rate_hz = 0.0;  ///< frame rate; 0 = unknown, or the driver's choice
 };
 
-/// An integer control of the camera.
+/// A control of the camera: a whole number, a switch (0 or 1) or the index of a menu entry.
 struct VideoControl {
     std::uint32_t id = 0;  ///< V4L2_CID_*
     std::string name;      ///< name of the control in the driver

@@ -104,9 +104,12 @@ Result<Header> parse_header(std::string_view text,
         const auto value = parse_value(words[1]);
         if (!value) return at_line(file, lines.number(), why_no_number(words[1]));
         if (!take_pair(lowercase(words[0]), *value, header)) {
-            return at_line(file,
-                           lines.number(),
-                           fmt::format("unknown key {} of an ESRI grid", quoted(words[0])));
+            return at_line(
+                file,
+                lines.number(),
+                fmt::format("unknown key {} of an ESRI grid; known keys: ncols, nrows, xllcorner, "
+                            "xllcenter, yllcorner, yllcenter, cellsize, dx, dy, NODATA_value",
+                            quoted(words[0])));
         }
     }
     return header;

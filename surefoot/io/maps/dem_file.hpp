@@ -27,7 +27,7 @@ struct Dem {
 /// Reads heights and makes impossible heights unknown (surefoot/io/maps/height_rules.hpp).
 [[nodiscard]] Result<Dem> parse_height_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_height_grid(const std::string& path);
-/// Formats values with 9 significant digits, enough to read the same float back.
+/// Formats 9 significant digits per value: the same float is read back, except near -9999 (NODATA).
 [[nodiscard]] std::string format_esri_grid(const grid::GridGeometry& geometry,
                                            const grid::Layer& values);
 [[nodiscard]] Status write_esri_grid(const std::string& path,

@@ -135,9 +135,9 @@ Result<Outline> read_outline(std::string_view bytes, const std::string& file) {
     take(outline.feature_bytes);
     take(reserved);
     if (reserved != 0)
-        return damaged(file, fmt::format("impossible place: reserved bytes hold {}", reserved));
+        return damaged(file, fmt::format("invalid place: reserved bytes hold {}", reserved));
     if (const Status status = check_sizes(outline, content); !status)
-        return damaged(file, "impossible place: " + status.error().message);
+        return damaged(file, "invalid place: " + status.error().message);
     return outline;
 }
 
@@ -211,13 +211,13 @@ Result<PlaceFile> parse_place(std::string_view bytes, const std::string& file) {
         if (const Status status = read_keyframe(left, *outline, out.place.keyframes.back());
             !status)
             return damaged(
-                file, fmt::format("impossible place: keyframe {}: {}", i, status.error().message));
+                file, fmt::format("invalid place: keyframe {}: {}", i, status.error().message));
     }
     if (!left.empty())
         return damaged(
-            file, fmt::format("impossible place: {} bytes follow its last keyframe", left.size()));
+            file, fmt::format("invalid place: {} bytes follow its last keyframe", left.size()));
     if (const auto problem = out.place.problem())
-        return damaged(file, "impossible place: " + *problem);
+        return damaged(file, "invalid place: " + *problem);
     return out;
 }
 

@@ -34,7 +34,9 @@ class MjpegSource final : public camera::FrameSource {
         const std::optional<JpegSpan>& span = *found;
         if (!span) {
             if (rest_.size() > kMaxImageBytes || (index_ == 0 && at_end_))
-                return end_with(input_error(info_.path + ": no JPEG images in this file"));
+                return end_with(input_error(info_.path +
+                                            ": no JPEG images in the next 64 MiB of this file; "
+                                            "check that it is an MJPEG file"));
             if (rest_.find(kStart) != rest_.npos)
                 return end_with(input_error(what + ": truncated: the end of the image is missing"));
             return std::optional<StereoFrame>();

@@ -9,7 +9,7 @@
 
 namespace surefoot::io {
 
-/// Position of the first JPEG in a stream; `end` is the byte after the end marker.
+/// Position of a JPEG in a stream: the bytes from `begin` up to, but not including, `end`.
 struct JpegSpan {
     std::size_t begin = 0;
     std::size_t end = 0;

@@ -20,8 +20,8 @@ namespace surefoot::io {
 /// in steps of 0.2 mm, and cannot store an IMU:
 ///   rgb.txt, rgb/STAMP_S.png, depth.txt, depth/STAMP_S.png, rig.yaml
 /// Both layouts get groundtruth.tum if the caller adds true poses.
-/// Writes an image before the line that names it and flushes every line: a recording stays readable
-/// after an interruption at any time. Stores raw images unchanged, without loss.
+/// Writes an image before the line that names it, and hands each line to the system at once: a
+/// recording stays readable if the program is killed. Stores grey images unchanged, without loss.
 class Recorder {
   public:
     enum class Existing : std::uint8_t {
@@ -66,7 +66,7 @@ struct RecordingInfo {
     std::string first_missing;  ///< first listed file that does not exist
     int bad_stamps = 0;         ///< number of stamps that do not increase
     double duration_s = 0.0;    ///< time from the first to the last stamp
-    double rate_hz = 0.0;  ///< median rate; with fewer than two frames 0 or the rate of the rig
+    double rate_hz = 0.0;  ///< median rate; below two frames: 0, for a video the rate of the rig
     int gaps = 0;          ///< number of intervals longer than 1.5 times the median
     double longest_gap_s = 0.0;
     std::int64_t bytes = 0;  ///< size of all images

@@ -26,7 +26,7 @@ struct OpenOptions {
     /// frame time; for TUM RGB-D the 20 ms of the benchmark.
     std::optional<double> pair_tolerance_s = {};
     std::optional<double> depth_codes_per_m = {};  ///< scale of depth images (RGB-D)
-    /// Bits of the largest value in 16-bit images (9..16); the upper 8 of them are used. Default:
+    /// Number of bits that the values of 16-bit images use (9..16); the upper 8 are kept. Default:
     /// the fewest of 10, 12, 14 and 16 bits that hold the first, middle and last image.
     std::optional<int> image_bits = {};
     bool skip_broken = false;  ///< continue after unusable frames (skip_broken_frames)
@@ -42,7 +42,7 @@ struct FrameEntry {
     std::int64_t time_ns = 0;
     std::string left;   ///< left image, side-by-side image, or colour image of RGB-D
     std::string right;  ///< right image or depth image; empty for side by side
-    std::string where;  ///< file and line of the stamp, "mav0/cam0/data.csv:17"
+    std::string where;  ///< file and line of the stamp ("mav0/cam0/data.csv:17"), or the image
 };
 
 struct Recording {
@@ -53,7 +53,7 @@ struct Recording {
     std::vector<ImuSample> imu;     ///< IMU samples with strictly increasing stamps
     int unpaired = 0;               ///< left (or colour) images without a partner
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
-    double largest_pair_difference_s = 0.0;         ///< of the stamps of the two images of a frame
+    double largest_pair_difference_s = 0.0;         ///< between the stamps of a frame's images
     float depth_codes_per_m = kDepthCodesPerMetre;  ///< scale of the depth images; RGB-D only
     int image_bits = 8;                             ///< used bits; more than 8 = 16-bit images
 };
@@ -62,20 +62,20 @@ struct Recording {
 [[nodiscard]] Result<Recording> index_euroc(const std::string& folder, const OpenOptions& options);
 /// Reads imu0/data.csv, if the rig has an IMU and the file exists.
 [[nodiscard]] Status read_euroc_imu(const std::string& folder, Recording& recording);
-/// Indexes left and right images in two folders: image_0 + image_1, image_l + image_r, image_2 +
-/// image_3 (KITTI odometry; calib.txt, times.txt), image_00 + image_01, image_02 + image_03 (KITTI
-/// raw; data/, timestamps.txt), cam0 + cam1 without lists, left + right and similar names. Or:
-/// left* and right* in one folder. docs/get_started/own_camera.md explains pairs and stamps.
+/// Indexes left and right images. KITTI odometry: image_0 + image_1, image_l + image_r, image_2 +
+/// image_3. KITTI raw: image_00 + image_01, image_02 + image_03. Other folders: cam0 + cam1 without
+/// data.csv, left + right and similar names. One folder: images left* and right*.
+/// docs/get_started/own_camera.md explains calibration, pairs and stamps.
 [[nodiscard]] Result<Recording> index_pair_folders(const std::string& folder,
                                                    const OpenOptions& options);
-/// Returns true if a folder contains left and right images in one of these layouts.
+/// Returns true if a folder looks like one of these layouts; index_pair_folders checks the rest.
 [[nodiscard]] bool has_pair_folders(const std::string& folder);
 /// Indexes images that show the left camera in the left half and the right camera in the right
 /// half, in natural order. Rate: `options.rate_hz`, else the rate of the rig, else 15 Hz.
 [[nodiscard]] Result<Recording> index_side_by_side(const std::string& folder,
                                                    const OpenOptions& options);
-/// Indexes TUM RGB-D: associations.txt, or rgb.txt and depth.txt associated within 20 ms; depth
-/// codes are 1/5000 m or mm. Uses Kinect intrinsics (525, 525, 319.5, 239.5) if no rig is given.
+/// Indexes TUM RGB-D: associations.txt, or rgb.txt and depth.txt paired by time; depth codes are
+/// 1/5000 m or mm. Uses Kinect intrinsics (525, 525, 319.5, 239.5) if there is no rig.
 [[nodiscard]] Result<Recording> index_tum_rgbd(const std::string& folder,
                                                const OpenOptions& options);
 
@@ -178,7 +178,7 @@ class RecordingSource final : public camera::FrameSource {
 /// Returns true if the extension of the name is that of a video file.
 [[nodiscard]] bool is_video_name(const std::string& path);
 /// Opens a side-by-side video. The rig is `options.rig_file`, else rig.yaml beside the video.
-/// Stamps: `options.rate_hz`, else times of the container, else rate of the rig, else 15 Hz.
+/// Stamps: `options.rate_hz`, else times or rate of the container, else of the rig, else 15 Hz.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
                                                                       const OpenOptions& options);
 

@@ -69,10 +69,11 @@ Status choose_image_bits(const OpenOptions& options, Recording& recording) {
     recording.info.notes.push_back(
         fmt::format("16-bit images: the upper 8 of {} bits are used{}",
                     recording.image_bits,
-                    options.image_bits ? std::string()
-                                       : fmt::format(" (the first, middle and last image reach "
-                                                     "{}); if this is wrong, give --image-bits",
-                                                     largest)));
+                    options.image_bits
+                        ? std::string()
+                        : fmt::format(" (the largest value in the first, middle and last image is "
+                                      "{}); if this is wrong, give --image-bits",
+                                      largest)));
     return {};
 }
 
@@ -246,7 +247,7 @@ Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
     if (largest_ns > 0) {
         recording.info.notes.push_back(fmt::format(
             "the time stamps of the two images of a frame differ by up to {:.3f} ms. Images are "
-            "paired {}, and the frame gets the time stamp of its first image",
+            "paired {}, and the frame gets the time stamp of its left (or colour) image",
             1e3 * recording.largest_pair_difference_s,
             within));
     }

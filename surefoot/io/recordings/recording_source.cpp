@@ -62,7 +62,9 @@ Status load_pair(const FrameEntry& entry,
     if (!left) return left.error();
     if (!is_file(entry.right)) {
         return input_error(
-            fmt::format("{}: the right image of this frame is missing", entry.right));
+            fmt::format("{}: the right image of this frame is missing; copy it into the recording, "
+                        "or skip such frames with --skip-broken",
+                        entry.right));
     }
     Result<GreyImage> right = read_camera_image(entry.right, bits);
     if (!right) return right.error();
@@ -193,8 +195,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_any(const std::string& path,
         if (is_video_name(path)) return open_video_at(path, options);
         return input_error(
             fmt::format("{}: a single file must be a video (.avi .mp4 .mkv .mov .webm .mpg .m4v "
-                        ".mjpeg); for images give "
-                        "their folder",
+                        ".mjpeg .mjpg); for images give their folder",
                         path));
     }
     if (!is_folder(path)) return input_error(fmt::format("{}: no such file or folder", path));

@@ -22,8 +22,8 @@ struct StampUnit {
 
 /// Guesses the unit of stamps from their text. Stamps since 1970 are recognised by size: ns from
 /// 1e17, us from 1e14, ms from 1e11. Whole numbers with another origin are ns if their median step
-/// is a million or more (as s: eleven days). All others are seconds. Words that are not numbers are
-/// ignored.
+/// is a million or more (a million seconds would be eleven days). All others are seconds. Words
+/// that are not numbers are ignored.
 [[nodiscard]] StampUnit stamp_unit_of(std::span<const std::string_view> words);
 
 /// Parses a stamp to nanoseconds, exact for plain digits; no value for other text or overflow.

@@ -134,8 +134,8 @@ Result<TrajectoryFile> parse_trajectory(std::string_view text, const std::string
     }
     if (out.poses.empty()) {
         return input_error(
-            fmt::format("{}: no poses in this trajectory ({} rows of numbers, and each row has NaN "
-                        "or infinity)",
+            fmt::format("{}: no poses in this trajectory ({} rows of numbers; rows with NaN or "
+                        "infinity do not count)",
                         file,
                         table->rows().size()));
     }

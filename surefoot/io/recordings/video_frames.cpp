@@ -143,7 +143,9 @@ Result<VideoFrames> VideoFrames::open(const std::string& path) {
     } catch (const cv::Exception&) {  // reported below
     }
     if (!opened)
-        return input_error(path + ": cannot be opened as a video (damaged, or unknown codec)");
+        return input_error(path +
+                           ": cannot be opened as a video (damaged, or unknown codec); copy the "
+                           "file again, or convert it with ffmpeg");
     return VideoFrames(std::move(impl));
 }
 

@@ -12,7 +12,7 @@ namespace surefoot::io {
 
 struct VideoFrame {
     GreyImage image;
-    /// Time from the container; without times, index / rate. No value without times and rate.
+    /// Time from the container, otherwise index / rate. No value if it has neither times nor rate.
     std::optional<std::int64_t> time_ns;
 };
 

@@ -35,9 +35,9 @@ struct MachineFile {
     std::uint64_t hash = 0;             ///< FNV-1a of the file's bytes, for logs
 };
 
-/// Strict: every key must be present once and inside its range, and no other key is allowed.
-/// Otherwise a usage error names file, line, key, value and limit. Lengths are rounded to 0.1 mm. A
-/// limit that is laxer than its rated value (surefoot/io/settings/rated_limits.hpp) needs an entry
+/// Strict: every key except `deviations` must be present, once and inside its range, and no other
+/// key is allowed. Otherwise a usage error names file, line, key, value and limit. Lengths are
+/// rounded to 0.1 mm. A limit that is laxer than its rated value (rated_limits.hpp) needs an entry
 /// in `deviations`. A step of class walk that is higher than the swing clearance is refused even
 /// with a signature.
 [[nodiscard]] Result<MachineFile> parse_machine(std::string_view yaml, const std::string& file);

@@ -49,7 +49,10 @@ constexpr std::array kRatedLimits{
                "a larger value allows higher objects in the path of a foot"},
     RatedLimit{
         "limits.foot_margin_m", 0.02, false, "a smaller value checks a narrower path of the foot"},
-    RatedLimit{"limits.drop_m", 0.05, true, "the lowest kerb is only 75 mm high"},
+    RatedLimit{"limits.drop_m",
+               0.05,
+               true,
+               "a larger value leaves less margin to the lowest kerb that was tried (75 mm)"},
     RatedLimit{
         "limits.drop_band_m", 0.10, false, "a smaller value allows an edge closer to a foot"},
     RatedLimit{"limits.drop_evidence",

@@ -11,8 +11,8 @@
 namespace surefoot::io {
 
 /// A group of keys of a strict file. Every key that the caller reads must exist, unless the caller
-/// checks `has` first; no other key may exist. The reader keeps the first error; after this error
-/// all calls return defaults.
+/// checks `has` first; no other key may exist. The reader keeps the first error; a call that fails
+/// returns a default.
 class YamlGroup {
   public:
     /// `prefix`: path of the keys to this group, for messages. `document`: name of the outermost

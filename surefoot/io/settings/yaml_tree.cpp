@@ -219,8 +219,9 @@ std::vector<double> YamlReader::any_numbers(const YamlNode& node,
         }
     }
     if (values.size() > max_count) {
-        fail(
-            node, key, fmt::format("{} numbers; at most {} belong here", values.size(), max_count));
+        fail(node,
+             key,
+             fmt::format("found {} numbers; at most {} are allowed", values.size(), max_count));
     }
     return values;
 }
@@ -230,7 +231,9 @@ std::vector<double> YamlReader::numbers(const YamlNode& node,
                                         std::size_t count) {
     std::vector<double> values = any_numbers(node, key, kMaxValues);
     if (values.size() != count) {
-        fail(node, key, fmt::format("{} numbers; exactly {} belong here", values.size(), count));
+        fail(node,
+             key,
+             fmt::format("found {} numbers; exactly {} are needed", values.size(), count));
     }
     values.resize(count, 0.0);
     return values;

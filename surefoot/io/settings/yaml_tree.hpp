@@ -34,8 +34,8 @@ struct YamlNode {
 /// Parses the first document. Limits: 16 MB, 64 levels, 1e6 values (aliases count each time).
 [[nodiscard]] Result<YamlNode> parse_yaml(std::string_view text, const std::string& file);
 
-/// Typed access whose errors name file, line and key. The reader keeps the first failure; later
-/// calls return defaults. Read all values, then check `error` once.
+/// Typed access whose errors name file, line and key. The reader keeps the first failure; a call
+/// that fails returns a default. Read all values, then check `error` once.
 class YamlReader {
   public:
     YamlReader(std::string file, const YamlNode& root) : file_(std::move(file)), root_(root) {}

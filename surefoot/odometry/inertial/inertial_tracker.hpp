@@ -53,7 +53,7 @@ class InertialTracker {
     [[nodiscard]] std::optional<CameraFix> reckon();
     /// Sets the final pose of the present frame.
     void place(const Pose& T_odom_camera);
-    /// True if vision and IMU disagreed for some time, or once by far too much for chance.
+    /// True if the initialisation failed, or if vision and IMU disagreed for long or by 15 sigma.
     [[nodiscard]] bool disagrees() const noexcept { return disagrees_; }
     /// True if samples are missing in this and the previous frame: vision continues alone.
     [[nodiscard]] bool gap() const noexcept { return watch_.gap(); }

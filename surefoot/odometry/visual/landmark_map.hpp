@@ -45,7 +45,7 @@ struct PredictedView {
 };
 
 struct LandmarkMapConfig {
-    int window_keyframes = 8;  ///< newest keyframes, adjusted together; older ones stay fixed
+    int window_keyframes = 8;  ///< newest keyframes; all but their oldest are adjusted together
     int most_keyframes = 100;
     int most_landmarks = 3000;
     BundleConfig bundle;
@@ -64,7 +64,7 @@ class LandmarkMap {
     /// Appends a keyframe. Beyond the limit, removes the oldest keyframe with its hosted landmarks.
     int add_keyframe(const Pose& T_odom_camera);
     /// Adds a landmark that the newest keyframe observes at `raw_px` (rectified: `pixel`). Returns
-    /// its slot, or nothing if its patch would leave the image.
+    /// its slot, or nothing if its patch would leave the image or the lens model.
     std::optional<int> add_landmark(ImageView<const std::uint8_t> left,
                                     const Eigen::Vector2d& raw_px,
                                     const StereoPixel& pixel);

@@ -11,8 +11,8 @@ namespace surefoot::odometry {
 /// Estimates the pixel noise of this camera's points from their residuals.
 ///
 /// The residuals inside a gate say little about noise that is too large for the gate. The median of
-/// all residuals, outliers included, measures it while less than half are outliers. The estimate
-/// changes slowly, so that a person who walks by does not widen the gates.
+/// the residuals in the wider RANSAC gate measures it if less than half of them are outliers. The
+/// estimate changes slowly, so that a person who walks by does not widen the gates.
 class MeasuredNoise {
   public:
     /// `expected_px`: one sigma of a point, per camera and axis. The result is at least this value

@@ -69,8 +69,8 @@ inline constexpr int kMinimalPoseMatches = 5;
 
 /// Ratio of actual to expected residuals of the matches at a pose: the median of the residuals in
 /// sigmas, divided by the median of normal errors. The ratio is valid while fewer than half of the
-/// matches are outliers. Leaves out residuals beyond `ransac_threshold_px`. Uses only matches with
-/// a full vote, if there are enough. Returns nothing if too few matches remain.
+/// matches are outliers. Residuals beyond `ransac_threshold_px` do not count. If enough matches
+/// have a full vote (1), only these count. Returns nothing if too few matches remain.
 [[nodiscard]] std::optional<double> residual_scale_of_all(const camera::RectifiedRig& rig,
                                                           const PoseSolverConfig& config,
                                                           std::span<const PointMatch> matches,

@@ -35,7 +35,7 @@ struct StereoPointConfig {
                                                            const StereoPointConfig& config);
 
 /// Rectified measurement from aligned raw pixels of both cameras, with v the mean row. Returns
-/// nothing if the rows differ by more than `epipolar_px` or the disparity is out of range.
+/// nothing if the rows differ by more than `epipolar_px` or the disparity is too small.
 [[nodiscard]] std::optional<StereoPixel> stereo_pixel(const camera::Rectifier& rectifier,
                                                       const Eigen::Vector2d& raw_left_px,
                                                       const Eigen::Vector2d& raw_right_px,

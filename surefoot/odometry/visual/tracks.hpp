@@ -39,7 +39,7 @@ class Tracks {
     virtual void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) = 0;
     /// Finds the landmarks as precisely as possible. `T_odom_camera` must be good to about a pixel.
     virtual void align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) = 0;
-    /// Makes a landmark of each point without a landmark. The map's newest keyframe must be the
+    /// Makes a landmark of each new point that has a depth. The map's newest keyframe must be the
     /// present frame. Returns the number of new landmarks.
     virtual int seed(LandmarkMap& map, Executor& executor) = 0;
     /// Makes the present frame the reference from which the next frame is tracked.
@@ -48,7 +48,7 @@ class Tracks {
     virtual void clear();
     /// Sharpness of the present frame until `keep`. Meaningful only relative to other frames.
     [[nodiscard]] virtual double sharpness() const = 0;
-    /// True if the right camera shows about as much as the left camera in the present frame.
+    /// True if the right camera shows enough structure, or any point, in the present frame.
     [[nodiscard]] virtual bool right_shows_something() const = 0;
     /// True if `align` or `seed` found in the present frame that the cameras are swapped.
     [[nodiscard]] virtual bool cameras_swapped() const { return false; }

@@ -79,7 +79,7 @@ Result<StepEvent> CommandedMotion::step(int command, double time_s) {
         movements_.begin(), movements_.end(), [&](const auto& m) { return m.command == command; });
     if (movement == movements_.end())
         return usage_error(fmt::format(
-            "simulated REX: no movement has the command {}; send a command of the machine file",
+            "simulated REX: no movement has the command {}; send a command of machines/rex.yaml",
             command));
     if (time_s < free_s_)
         return usage_error(

@@ -17,8 +17,8 @@ namespace surefoot::sim {
 /// again. Commands never change the past. Thread-safe.
 class CommandedMotion final : public Motion {
   public:
-    /// Stands at `start` on `ground_z_m`, which is queried along the walk (see ground_of). Returns
-    /// a usage error if the legs cannot take this stand.
+    /// Stands at `start` on `ground_z_m`, which is queried along the walk (see ground_of). Passes
+    /// on errors of RexMotion::make, which has none for a stand without steps.
     [[nodiscard]] static Result<std::shared_ptr<CommandedMotion>> make(const RexStand& start,
                                                                        GroundHeight ground_z_m,
                                                                        const RexGaitConfig& gait,

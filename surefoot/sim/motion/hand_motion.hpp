@@ -14,7 +14,7 @@ namespace surefoot::sim {
 /// A camera that a walking person carries. All amplitudes are an ASSUMPTION: ordinary walking has
 /// 1.8-2 steps a second and 30-40 mm of vertical motion, peak to peak. The defaults are at the
 /// lower ends, because arms damp the motion. The vertical acceleration then has peaks of 2.0 m/s^2
-/// and an rms of 1.4 m/s^2. Every amplitude varies by 10 % with the seed.
+/// and an rms of 1.4 m/s^2. The seed changes every amplitude by up to 10 %.
 struct HandConfig {
     double height_m = 1.30;   ///< height of base_link above the ground, in front of the chest
     double speed_m_s = 1.0;   ///< walking speed; slow, because the person watches a screen
@@ -30,7 +30,7 @@ struct HandConfig {
     double drift_m = 0.008;   ///< amplitude of the slow drift of the hands
 };
 
-/// Hand-held camera: the level path of a trolley plus periodic and slow movements. The gait part
+/// Hand-held camera: the path of a trolley without tilt, plus periodic and slow movements. The gait
 /// fades in and out with the walk. All movements fade to a stand at the start and at the end. The
 /// acceleration is continuous.
 class HandMotion final : public Motion {

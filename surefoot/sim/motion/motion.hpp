@@ -19,8 +19,8 @@ struct MotionState {
 };
 
 /// Pose of base_link over time. It can be queried at any time, because image rows and inertial
-/// samples lie between the frame stamps. Immutable and safe to query from several threads. The body
-/// stands still before the start and after the end.
+/// samples lie between the frame stamps. Several threads may query it at once. The body stands
+/// still before the start and after the end.
 class Motion {
   public:
     virtual ~Motion() = default;

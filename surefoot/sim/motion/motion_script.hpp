@@ -44,11 +44,11 @@ struct Stop {
 struct ScriptedMotion {
     std::shared_ptr<const Motion> motion;
     std::vector<StepEvent> steps = {};  ///< only for a walking machine; empty for the other models
-    std::vector<Stop> stops = {};       ///< only for a trolley; a hand-held camera never stops
+    std::vector<Stop> stops = {};       ///< only for a trolley; a hand-held camera drifts in pauses
 };
 
-/// Builds the motion of a script. The seed moves all waypoints but the first by up to 1 cm along x
-/// and y and 0.3 deg, and draws small irregularities. An unwalkable script is a usage error.
+/// Builds a motion. The seed moves all waypoints but the first by up to 1 cm along x and y, and
+/// 0.3 deg in yaw, and draws small irregularities. An unwalkable script is a usage error.
 ///
 /// The feet of the REX land on `ground_z_m`, queried under the middle of each sole. Without this
 /// function the ground is linear between the waypoint heights, queried under base_link. The other

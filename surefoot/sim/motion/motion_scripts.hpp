@@ -6,8 +6,8 @@
 namespace surefoot::sim {
 
 /// Everyday paths that are hard for a map: the machine steps onto ground that the camera saw long
-/// ago or only from the side. Paths start at the world origin, facing +x. The REX makes whole steps
-/// and turns, so that it stops within half a step of the requested place.
+/// ago, from the side only, or never. Paths start at the world origin, facing +x. The REX makes
+/// whole steps and turns, so that it stops within half a step of the requested place.
 
 /// Walks straight ahead to the target that the camera sees.
 [[nodiscard]] MotionScript approach_script(MotionModel motion_model, double distance_m);
@@ -21,7 +21,7 @@ namespace surefoot::sim {
                                                 double table_x_m,
                                                 double left_m);
 
-/// Sees a door ahead in a wall across x and stops before it. Turns the right side back, so that the
+/// Sees a door ahead in a wall across x and stops before it. Turns right by 90 deg, so that the
 /// left side with the camera faces the door. Sidesteps through it until `beyond_m` behind it.
 [[nodiscard]] MotionScript sidestep_through_door_script(MotionModel motion_model,
                                                         double door_x_m,

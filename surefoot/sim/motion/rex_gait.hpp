@@ -24,7 +24,7 @@ struct Spread {
 struct RexGaitConfig {
     double step_s = 10.0;                ///< step time: 0.35 m at the data sheet's 0.0347 m/s
     double settle_s = 1.5;               ///< standing time within step_s, until the ringing stops
-    double foot_clearance_m = 0.01;      ///< largest lift of the toes in a swing; ankles: 22 mm
+    double foot_clearance_m = 0.01;      ///< largest lift of the toes; leading ankle: 22 mm
     Spread lateral_shift_m{0.10, 0.11};  ///< sway of base_link over the standing foot, to each side
     Spread roll_deg{3.0, 4.0};           ///< roll of base_link toward the standing foot
     Spread yaw_deg{1.5, 3.0};            ///< yaw of base_link toward the foot behind

@@ -9,7 +9,7 @@
 
 namespace surefoot::sim {
 
-/// All moving joints of a REX. The camera is mounted at base_link. The legs hang from the pelvis.
+/// All moving joints of a REX. The camera is fixed to base_link. The legs hang from the pelvis.
 /// The frame above the hips is flexible: it turns against the pelvis by a few degrees.
 struct RexJoints {
     static constexpr std::size_t kCount = 15;

@@ -202,8 +202,8 @@ Result<RexPlan> plan_rex_steps(const std::vector<Waypoint>& waypoints,
         planner.go_to(waypoints[i]);
         if (planner.count() >= kMaxSteps) {
             return usage_error(
-                fmt::format("simulator: the path of the rex to waypoint {} takes more than {} "
-                            "steps; shorten the path",
+                fmt::format("simulator: the path of the rex to waypoint {} takes {} steps "
+                            "or more; shorten the path",
                             i,
                             kMaxSteps));
         }

@@ -54,7 +54,7 @@ struct RexPlan {
 /// Plans commands through the waypoints as an operator would give them. The machine turns in place
 /// toward the waypoint, or goes backward or sideways if that is shorter or requested. It repeats
 /// the sector that brings it nearest. Then it turns to the waypoint's yaw. It stops within half a
-/// step and half a turn. A path of more than 2000 steps is a usage error.
+/// step and half of `turn_deg`. A path of 2000 steps or more is a usage error.
 [[nodiscard]] Result<RexPlan> plan_rex_steps(const std::vector<Waypoint>& waypoints,
                                              const RexStepSizes& sizes,
                                              Rng& rng);

@@ -16,7 +16,7 @@ struct Pixel {
     int v = 0;
 };
 
-/// Finds pixels of a block whose neighbour has another key, row by row; returns their number.
+/// Finds pixels of a block next to a pixel with another key, row by row; returns their number.
 [[nodiscard]] std::size_t find_edge(const Image<std::uint32_t>& key,
                                     int block_x,
                                     int block_y,

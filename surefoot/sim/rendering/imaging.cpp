@@ -45,7 +45,7 @@ void ImagingConfig::describe(ConfigVisitor& visitor) {
                    exposure,
                    0.01,
                    10.0,
-                   "grey value of a white surface that faces the lamp, as a share of 255");
+                   "grey value of a fully lit white surface, as a share of 255");
     visitor.number("vignetting", vignetting, 0.0, 0.9, "share of light lost in the image corner");
     visitor.number(
         "read_noise_dn", read_noise_dn, 0.0, 50.0, "one sigma of the image noise without light");

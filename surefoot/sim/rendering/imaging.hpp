@@ -11,7 +11,7 @@ namespace surefoot::sim {
 
 /// The sensor model from light to grey value. Grey values ("dn") are linear in light, 0..255.
 struct ImagingConfig {
-    double exposure = 1.4;        ///< grey value of a white surface facing the lamp, share of 255
+    double exposure = 1.4;        ///< grey value of a fully lit white surface, as a share of 255
     double vignetting = 0.25;     ///< share of light lost in the image corner
     double read_noise_dn = 1.0;   ///< one sigma of the noise that does not depend on the light
     double shot_noise_dn = 0.02;  ///< variance of the shot noise per grey value: sigma 1.6 at 128

@@ -22,7 +22,7 @@ void Lighting::describe(ConfigVisitor& visitor) {
                    lamp_azimuth_deg,
                    -360.0,
                    360.0,
-                   "direction to the lamp, from +x towards +y");
+                   "angle of the direction to the lamp: 0 = along +x, 90 = along +y");
     visitor.number("lamp_elevation_deg",
                    lamp_elevation_deg,
                    1.0,

@@ -54,7 +54,7 @@ struct PlaneTexels {
     double texels_per_m = 0.0;
 };
 
-/// Smallest cosine of incidence (1.1 deg from grazing) that stretches a pixel's footprint.
+/// Lower limit of the cosine of incidence that stretches a footprint: 1.1 deg from grazing.
 inline constexpr double kLeastCosine = 0.02;
 
 /// Returns the texture position and the footprint of a ray that hits a plane.

@@ -51,8 +51,8 @@ struct BatchRange {
     std::size_t end = 0;
 };
 
-/// A half space that contains a convex solid, relative to one origin: n . p <= offset, with the
-/// origin `outside_m` outside it.
+/// A side of a convex solid, relative to the origin of a ray. The solid lies behind the side; the
+/// origin lies `outside_m` in front of it (negative: behind it).
 struct FacingSide {
     Eigen::Vector3d normal;
     double outside_m = 0.0;

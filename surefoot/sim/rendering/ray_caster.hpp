@@ -39,7 +39,7 @@ void find_primitives(const Scene& scene,
                      int block_y,
                      CastBlock& out);
 
-/// Casts the rays of a block of pixels against the primitives found by find_primitives.
+/// Calls find_primitives, then casts the rays of the block against the primitives found.
 void cast_block(const Scene& scene,
                 const RayField& rays,
                 const ImageViews& views,

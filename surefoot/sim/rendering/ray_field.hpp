@@ -49,7 +49,7 @@ class RayField {
     [[nodiscard]] double pixel_angle_rad(int u, int v) const noexcept {
         return static_cast<double>(pixel_angle_rad_[index(u, v)]);
     }
-    /// Ray of a sub-pixel position, offsets in px; NaN if a neighbouring pixel has no ray.
+    /// Ray of a sub-pixel position, offsets in px; may be NaN if a neighbouring pixel has no ray.
     [[nodiscard]] Eigen::Vector3d ray_within(int u, int v, double du_px, double dv_px) const;
     [[nodiscard]] const Cone& cone(int block_x, int block_y) const noexcept {
         return cones_[static_cast<std::size_t>(block_y * blocks_x() + block_x)];

@@ -53,9 +53,9 @@ struct CameraConfig {
 };
 
 /// Renders a scene by casting the exact ray of each pixel through its lens model, from the camera
-/// pose at the exposure of that row. Textures are averaged over the pixel, surface edges over 4
-/// points in it, so that sub-pixel detail blurs as in a real camera. The executor does not change
-/// the result. Immutable after construction.
+/// pose at the exposure of that row. Textures are averaged over the pixel. Surface edges are
+/// averaged over 4 points in it; with motion blur over 1 point in each blurred image. The executor
+/// does not change the result. Immutable after construction.
 class Renderer {
   public:
     /// Returns an error that names the problem if the rig cannot be rendered, for example an RGB-D

@@ -12,8 +12,8 @@
 
 namespace surefoot::sim {
 
-/// The surface point that a ray hits. Radiance 1 = a white surface under full light. `key` differs
-/// if the face, the light or shadow, or the mirrored object differs; texture does not change it.
+/// Light from the surface point that a ray hits. Radiance 1 = a fully lit white surface. `key`
+/// tells faces, light and shadow, and objects in a mirror or behind a pane apart, but not textures.
 struct Seen {
     float radiance = 0.0F;
     std::uint32_t key = 0;

@@ -13,7 +13,7 @@ namespace surefoot::sim {
 /// Gaussian noise that changes slowly over an image. The cubic B-spline low-passes independent
 /// numbers on a lattice in both directions. The variance is scaled to 1 everywhere. The correlation
 /// along a row or a column falls to 1/e at `length_px`. The lattice has a random offset, so that no
-/// pixel is special. The values depend on (seed, pixel) alone.
+/// pixel is special. The order in which rows are written does not change the values.
 class SmoothNoise {
   public:
     /// Prepares every `stride`-th pixel of an image; there are `columns` by `rows` such pixels.
@@ -40,7 +40,7 @@ class SmoothNoise {
 };
 
 /// Gaussian noise of unit variance attached to the surfaces of a scene: a function of (seed,
-/// surface, position on it). Linear between the nodes of a lattice with spacing `size_m`.
+/// surface, position on it). Interpolated on a lattice with spacing `size_m`, scaled to variance 1.
 class SurfaceNoise {
   public:
     SurfaceNoise(std::uint64_t seed, double size_m);

@@ -12,8 +12,8 @@
 
 namespace surefoot::sim {
 
-/// Kinds of surface pattern, from a strongly textured carpet, which matchers and trackers like, to
-/// a painted wall with nearly no texture.
+/// Kinds of surface pattern. A carpet has a strong texture, which is easy to match and to track; a
+/// painted wall (`white_wall`) has nearly none.
 enum class Pattern : std::uint8_t {
     carpet,
     tiles,
@@ -46,12 +46,12 @@ inline constexpr const char* kPatternNames[kPatterns] = {"carpet",
 enum class Finish : std::uint8_t { matte, mirror, glass };
 inline constexpr const char* kFinishNames[] = {"matte", "mirror", "glass"};
 
-/// Share of a material's contrast that its pattern shows. Roller paint hides nearly all of it (a
-/// contrast of 0.6 leaves 1.2 % rms). ASSUMPTION: no wall was measured.
+/// Share of a material's contrast that its pattern shows: 1, but 0.05 for `white_wall` (a contrast
+/// of 0.6 leaves 1.2 % rms). ASSUMPTION: no wall was measured.
 [[nodiscard]] float pattern_strength(Pattern pattern) noexcept;
 
-/// Appearance of a surface. Reflectance = albedo (1 + contrast * strength * pattern), with the
-/// pattern in [-1, 1].
+/// Appearance of a surface. Reflectance = albedo (1 + contrast * pattern_strength * (pattern + 0.35
+/// blotch)), clamped to [0, 1]. The pattern and its coarse blotches are in [-1, 1].
 struct Material {
     Pattern pattern = Pattern::carpet;
     double albedo = 0.45;    ///< mean reflectance, 0..1
@@ -61,8 +61,8 @@ struct Material {
     std::uint64_t seed = 0;  ///< shifts the pattern; combined with the seed of the scene
     Finish finish = Finish::matte;
     double gloss = 0.9;  ///< mirror: share reflected; glass: share that passes straight on
-    /// All solids of one shape get the same pattern. Its origin is the middle of the solid (for a
-    /// cylinder: height 0) and its shift is that of the face within the solid.
+    /// All solids of one shape get the same pattern. Its origin is the middle of the solid (side of
+    /// a cylinder: height 0). Its shift depends on the number of the face in the solid.
     bool same_look = false;
 
     void describe(ConfigVisitor& visitor);
@@ -84,8 +84,8 @@ class TextureTable {
     /// Position in units of 2^-16 texels of the finest level. It wraps: adding a multiple of the
     /// tile size changes nothing.
     using Place = std::uint32_t;
-    /// Adding this constant to a double turns its lowest bits into a whole number of either sign.
-    /// Wrapping is intended, and compilers vectorise this form.
+    /// Converts texels. Adding `kWholeNumbers` to a double turns its lowest bits into a whole
+    /// number of either sign. Wrapping is intended, and compilers vectorise this form.
     [[nodiscard]] static Place place(double texels) noexcept {
         constexpr double kWholeNumbers = 0x1.8p52;
         return static_cast<Place>(std::bit_cast<std::uint64_t>(texels * 65536.0 + kWholeNumbers));
@@ -167,7 +167,7 @@ struct TextureBatch {
 };
 
 /// The textures of a scene. Far and grazing surfaces are averaged over the pixel footprint with up
-/// to four samples along its long axis. The mip level of each sample fits the short axis.
+/// to four samples along its long axis. The mip level fits the short axis or the sample spacing.
 class Textures {
   public:
     Textures(const std::vector<Material>& materials, std::uint64_t seed);

@@ -117,7 +117,7 @@ inline Cover cover_of(float along_u, float along_v, float minor_texel, float cos
     return cover;
 }
 
-/// Position of the first of `taps` look-ups around a position.
+/// Position of the first of `taps` look-ups that are centred on `middle`.
 inline TextureTable::Place first_tap(TextureTable::Place middle,
                                      TextureTable::Place step,
                                      int taps) noexcept {

@@ -100,7 +100,8 @@ std::string describe(const Finding& f) {
         return fmt::format("{} {:.3f} m {}, limit {:.3f} m", what, f.value, at, f.limit);
     };
     switch (f.danger) {
-        case Danger::unknown_command: return "the machine has no such movement";
+        case Danger::unknown_command:
+            return "the machine has no such movement, or its class is disabled";
         case Danger::unknown_pose: return "a number in the pose of the machine is not finite";
         case Danger::no_stance:
             return f.limit > 0.0 ? against("the feet stand at heights that differ by")
@@ -121,7 +122,8 @@ std::string describe(const Finding& f) {
                                f.limit);
         case Danger::roughness: return against("the ground under a landing foot is uneven by");
         case Danger::obstacle_in_way:
-            return against("an obstacle in the path of a foot has a height of");
+            return against(
+                "an obstacle in the path of a foot has its top or underside at a height of");
         case Danger::body_hits:
             return against("the body hits an object that begins at a height of");
         case Danger::overhang_too_low:

@@ -28,7 +28,7 @@ enum class Danger : std::uint8_t {
     tilt,              ///< a landing foot would tilt too steeply [deg]
     roughness,         ///< ground under a patch of the sole is too far from the fitted plane
     obstacle_in_way,   ///< an object in the path of a foot (value: height of top or underside)
-    body_hits,         ///< a solid in the space of the body (value: height of its underside)
+    body_hits,         ///< a solid in the space of the body (value: height where it begins)
     overhang_too_low,  ///< like body_hits, but the underside is above the hips
     disconnected,      ///< the landing ground is not connected to the ground under the feet
 };

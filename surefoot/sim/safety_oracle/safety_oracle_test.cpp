@@ -47,7 +47,8 @@ TEST(SafetyOracleTest, CodesThatTheMachineDoesNotHaveAreRefused) {
         const auto answer = judge(world.scene, machine, standing(0.0, 0.0, 0.0), command);
         EXPECT_FALSE(answer.safe) << command;
         EXPECT_TRUE(answer.has(Danger::unknown_command)) << command;
-        EXPECT_EQ(answer.sentence(), "not safe: the machine has no such movement");
+        EXPECT_EQ(answer.sentence(),
+                  "not safe: the machine has no such movement, or its class is disabled");
     }
 }
 

@@ -17,7 +17,7 @@ struct RepeatSpec {
     int count = 1;
     void describe(ConfigVisitor& visitor) {
         visitor.integer(
-            "count", count, 0, kMaxPrimitives, "number of copies of the object; 0 = none");
+            "count", count, 0, kMaxPrimitives, "number of copies of the solids; 0 = none");
     }
 };
 

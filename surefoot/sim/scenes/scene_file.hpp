@@ -46,7 +46,7 @@ namespace surefoot::sim {
 /// The feet of the REX land on the ground of the scene.
 ///
 /// Strict: unknown keys, wrong types, values out of range, impossible geometry, a camera or a foot
-/// inside a solid, and too high steps are input errors that name file, line, value and limit.
+/// inside a solid, and too high steps are input errors that name file, line and problem.
 struct SceneFile {
     std::string file;  ///< file name for messages
     std::string_view text;

@@ -69,7 +69,7 @@ struct WaypointSpec {
                        yaw_deg,
                        -3600.0,
                        3600.0,
-                       "direction of base_link at the waypoint, from +x towards +y");
+                       "angle of base_link at the waypoint: 0 = along +x, 90 = along +y");
         visitor.number("pause_s", pause_s, 0.0, 600.0, "waiting time at the waypoint");
         visitor.number(
             "ground_z_m", ground_z_m, -kReach_m, kReach_m, "height of the ground at the waypoint");
@@ -115,11 +115,12 @@ void ScriptSpec::describe_script(ConfigVisitor& visitor) {
                            turn_deg,
                            -360.0,
                            360.0,
-                           "angle of the turn to the left; afterwards the machine turns back by "
-                           "the same angle");
+                           "angle of the turn, positive to the left; afterwards the machine turns "
+                           "back by the same angle");
             return;
         case Script::back_to_table:
-            visitor.number("table_x_m", table_x_m, 0.5, kReach_m, "x of the border of the table");
+            visitor.number(
+                "table_x_m", table_x_m, 0.5, kReach_m, "x of the near border of the table");
             visitor.number("left_m",
                            left_m,
                            0.5,
@@ -153,7 +154,7 @@ std::optional<std::string> ScriptSpec::problem() const {
     const auto which = static_cast<Script>(script);
     if (which == Script::back_to_table && left_m > table_x_m) {
         return fmt::format(
-            "left_m {} must be at most table_x_m {}, or the machine would pass the table",
+            "left_m {} must be at most table_x_m {}, because the machine starts at x = 0 m",
             left_m,
             table_x_m);
     }
@@ -233,7 +234,7 @@ void check_free(SceneReader& reader,
     if (!solid) return;
     reader.fail(group,
                 fmt::format("brings {} into the solid of line {} after {:.2f} s, at ({:.2f}, "
-                            "{:.2f}, {:.2f}) m",
+                            "{:.2f}, {:.2f}) m; move the path or the solid",
                             what,
                             builder.line_of(*solid),
                             time_s,

@@ -12,10 +12,10 @@ namespace surefoot::sim {
 /// Reads the group `motion` of a scene file: waypoints, or a script of motion_scripts.hpp by name.
 [[nodiscard]] MotionScript read_motion(SceneReader& reader, const SceneNode& group);
 
-/// Ground height for the feet of a walk that begins at z = 0: the highest surface that is within a
-/// foot's reach of the previous answer. A table top or a lintel is therefore not ground, but a ramp
+/// Ground height for the feet of a walk that begins at z = 0: the highest surface that is at most
+/// 0.25 m above the previous answer. A table top or a lintel is therefore not ground, but a ramp
 /// is, however high it leads. For a block that is too high the answer is its top; without any
-/// surface the ground is 1000 m deep: neither is walkable. The scene must outlive the returned
+/// surface the answer is -1000 m. The REX can walk on neither. The scene must outlive the returned
 /// function. Call it in the order of the walk.
 [[nodiscard]] GroundHeight ground_of(const Scene& scene);
 

@@ -25,8 +25,8 @@ inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
 inline constexpr int kRequiredChoice = -1;
 
 /// Reads values of a scene file. Numbers are expressions of the parameters above them; a parameter
-/// that is a word stands for that word. Keeps the first failure with file, line, key and value;
-/// later calls do nothing.
+/// that is a word stands for that word. Keeps the first failure with its file and line and ignores
+/// later ones.
 class SceneReader {
   public:
     explicit SceneReader(std::string file) : file_(std::move(file)) {}

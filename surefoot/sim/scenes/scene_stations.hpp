@@ -17,7 +17,7 @@ inline constexpr double kTripod_m = 1.6;
 [[nodiscard]] bool is_buried(const Scene& scene, const Eigen::Vector3d& station_m);
 
 /// Reads the group `scan` of a scene file: world positions of the laser scanner, `above_m` above
-/// the highest surface. Fails if a position is in a solid or has no ground.
+/// the highest surface. Fails if a position has no ground.
 [[nodiscard]] std::vector<Eigen::Vector3d> read_stations(SceneReader& reader,
                                                          const SceneNode& group,
                                                          const Scene& scene);

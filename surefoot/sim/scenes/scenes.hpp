@@ -47,8 +47,8 @@ struct ScriptedScene {
 /// The scenes of surefoot/sim/scene_files/, which are compiled into the program.
 [[nodiscard]] std::vector<SceneInfo> list_scenes();
 
-/// Builds a scene. The seed draws its parameters and shifts its textures. It moves the stops of the
-/// path by up to 1 cm along x and y (never the first stop). `name` is a listed name or a ".yaml"
+/// Builds a scene. The seed draws its parameters, shifts its textures, and moves all waypoints but
+/// the first by up to 1 cm along x and y, and 0.3 deg in yaw. `name` is a listed name or a ".yaml"
 /// file ("my/kerb.yaml", or "my/kerbs.yaml#kerb_low" if the file holds several). An unknown name is
 /// a usage error that names the likely scene. `motion_model` replaces the model of the scene; a
 /// path that this model cannot follow (a walking machine's steps are limited) is an error.

@@ -28,7 +28,7 @@ void describe_heading(ConfigVisitor& visitor, double& heading_deg) {
                    heading_deg,
                    -360.0,
                    360.0,
-                   "direction of the object, from +x towards +y of the group or scene");
+                   "angle of the object in the group or scene: 0 = along +x, 90 = along +y");
 }
 
 void describe_size(ConfigVisitor& visitor, const char* key, double& size_m) {

@@ -40,7 +40,7 @@ inline constexpr int kSameMaterial = -2;
 
 // The solids of a scene file. Each struct holds its keys, reports why it is impossible, and adds
 // itself to a scene. Lengths in metres; positions are in the frame of the enclosing group;
-// heading_deg turns from +x towards +y.
+// heading_deg = 0 points along +x, 90 along +y.
 
 /// A group moves the solids inside it.
 struct GroupSpec {
@@ -192,7 +192,7 @@ inline constexpr const char* kStairDirectionNames[] = {"up", "down"};
 
 /// Straight flight along its heading. It begins at its first edge: upward, the nose of the first
 /// step; downward, the edge of the floor above. `going_m` is the distance from nose to nose. Up: n
-/// rises have n treads, the last one `landing_m` deep. Down: n rises have n - 1 treads, then a
+/// rises have n treads; the last is the landing if `landing_m` is not 0. Down: n - 1 treads, then a
 /// landing if `landing_m` is not 0; the edge of the floor above belongs to that floor.
 struct FlightSpec {
     MaterialNames materials;

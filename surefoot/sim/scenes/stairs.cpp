@@ -99,11 +99,12 @@ void FlightSpec::describe(ConfigVisitor& visitor) {
     visitor.number("x_m", x_m, -kReach_m, kReach_m, "x of the middle of the first edge");
     visitor.number("y_m", y_m, -kReach_m, kReach_m, "y of the middle of the first edge");
     visitor.number("z_m", z_m, -kReach_m, kReach_m, "height of the floor where the flight begins");
-    visitor.number("heading_deg",
-                   heading_deg,
-                   -360.0,
-                   360.0,
-                   "direction of travel along the flight, from +x towards +y");
+    visitor.number(
+        "heading_deg",
+        heading_deg,
+        -360.0,
+        360.0,
+        "angle of the direction of travel along the flight: 0 = along +x, 90 = along +y");
     visitor.enumeration("direction",
                         direction,
                         kStairDirectionNames,
@@ -189,11 +190,12 @@ void SpiralSpec::describe(ConfigVisitor& visitor) {
     visitor.number("y_m", y_m, -kReach_m, kReach_m, "y of the axis of the spiral flight");
     visitor.number(
         "z_m", z_m, -kReach_m, kReach_m, "height of the floor where the spiral flight begins");
-    visitor.number("start_deg",
-                   start_deg,
-                   -360.0,
-                   360.0,
-                   "direction from the axis to the first edge, from +x towards +y");
+    visitor.number(
+        "start_deg",
+        start_deg,
+        -360.0,
+        360.0,
+        "angle of the direction from the axis to the first edge: 0 = along +x, 90 = along +y");
     visitor.number("turn_deg",
                    turn_deg,
                    -60.0,
@@ -202,7 +204,7 @@ void SpiralSpec::describe(ConfigVisitor& visitor) {
     visitor.enumeration("direction",
                         direction,
                         kStairDirectionNames,
-                        "whether the spiral flight leads up or down along turn_deg");
+                        "whether the spiral flight leads up or down in the direction of turn_deg");
     visitor.integer("steps", steps, 1, kMaxSteps, "number of rises of the spiral flight");
     visitor.number("rise_m", rise_m, kMinRise_m, kMaxRise_m, "height of each rise");
     visitor.number("inner_radius_m",

@@ -126,11 +126,12 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
         0.001,
         10.0,
         "correlation length, on the surface, of the noise that is attached to the surface");
-    visitor.number("locking_px",
-                   locking_px,
-                   0.0,
-                   0.5,
-                   "amplitude of the error that pulls disparities towards whole pixels");
+    visitor.number(
+        "locking_px",
+        locking_px,
+        0.0,
+        0.5,
+        "amplitude of the disparity error that repeats with each whole pixel of disparity");
     visitor.number("sigma_factor",
                    sigma_factor,
                    0.01,
@@ -148,16 +149,18 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
         0.0,
         100.0,
         "width of the seam beside an edge that gets the disparity of the nearer surface");
-    visitor.number("ramp_px",
-                   shadow.ramp_px,
-                   0.0,
-                   250.0,
-                   "largest width of the ramps of disparities that bridge an edge");
+    visitor.number(
+        "ramp_px",
+        shadow.ramp_px,
+        0.0,
+        250.0,
+        "largest width, beside an edge, of the ramps in which disparities may be interpolated");
     visitor.number("invented_share",
                    invented_share,
                    0.0,
                    1.0,
-                   "share of the shadowed and occluded pixels that a ramp bridges");
+                   "share of the pixels in ramps and of the occluded pixels that get interpolated "
+                   "disparities");
     visitor.number("edge_suspicion",
                    edge_suspicion,
                    0.0,

@@ -24,9 +24,9 @@ namespace surefoot::sim {
 ///   correlated  smooth over `correlation_px`, variance correlated_share sigma^2. The share
 ///               `fixed_share` of this variance is attached to the surface: a mean over frames does
 ///               not remove it.
-///   locking     locking_px sin(2 pi d): matchers pull towards whole disparities
+///   locking     locking_px sin(2 pi d), d = exact disparity: repeats with each whole disparity
 /// Beside a jump, a seam of pixels gets the disparity of the nearer surface (Shadow::fattened). A
-/// share of the ramp and occluded pixels gets interpolated disparities; the rest is unknown.
+/// share of ramp and occluded pixels is interpolated; other occluded or outside ones are unknown.
 ///
 /// Nominal sigma: best planar windows of real pairs scatter by 0.28-0.43 px; 0.25 px is the nominal
 /// figure of the project's accuracy tables. ASSUMPTION: every other default, until measured on
@@ -38,11 +38,11 @@ struct AnalyticStereoConfig {
     double correlation_px = 15.0;   ///< lag at which correlation has fallen to 1/e
     double fixed_share = 0.3;       ///< share of the correlated variance attached to the surface
     double fixed_size_m = 0.09;     ///< correlation length on the surface: 30 px at 1 m
-    double locking_px = 0.05;       ///< amplitude of the pull towards whole disparities
+    double locking_px = 0.05;       ///< amplitude of the error that repeats with each pixel
     double sigma_factor = 1.0;      ///< reported sigma / true sigma; < 1 = optimistic
 
     ShadowConfig shadow;
-    double invented_share = 0.5;    ///< share of shadowed and occluded pixels that a ramp bridges
+    double invented_share = 0.5;    ///< share of ramp and occluded pixels that are interpolated
     double edge_suspicion = 0.3;    ///< outlier probability reported in seams and ramps
     double plain_suspicion = 0.02;  ///< outlier probability reported elsewhere
 
@@ -73,11 +73,11 @@ class AnalyticStereo {
     /// The camera of the depth images: for stride 1 the `rig` of `make`. Otherwise a smaller camera
     /// with proportionally shorter focal lengths; disparities are in its own pixels.
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rig_; }
-    /// Exact view of the left camera. Keep the object from frame to frame to reuse its memory.
+    /// View of the left camera before errors. Reuse the object, so that it allocates memory once.
     struct View {
         Image<float> disparity_px;  ///< exact, in output pixels; NaN without a surface
         Image<std::int32_t> surface;
-        Image<float> fixed;           ///< noise of unit variance attached to the surface
+        Image<float> fixed;           ///< noise of the surface, variance 1 (fixed_share)
         Image<float> missing_chance;  ///< probability of no match; 1 = never matched
         ShadowMap shadows;
     };

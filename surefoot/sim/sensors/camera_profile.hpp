@@ -15,10 +15,10 @@ inline constexpr const char* kCameraProfileNames[] = {"ideal", "zed", "euroc", "
 /// Errors of a real camera beyond those of the ideal one. The figures are frozen: fitted to
 /// `zed_office` and `euroc_still` by `tools/experiments camera_fit` (docs/lab/reality_gap.md). The
 /// rotation of the ZED's right camera was measured on corners of the same recording. `zed_alone`
-/// has the errors of the ZED only. In a clutter scene like the recording it scatters as the
-/// recording does for the seeds of the fit, and a quarter more for other seeds. `zed` is for plain
-/// scenes. It adds the remaining scatter as noise, fitted to OpenCV's matcher (our matcher agrees
-/// with the recording at twice that noise). `zed` is the harsher profile; use it for claims.
+/// has the errors of the ZED only. In a clutter scene like the recording, its disparity noise is
+/// that of the recording for the seeds of the fit, and a quarter larger for other seeds. `zed` is
+/// for plain scenes and has more noise, fitted to OpenCV's matcher (our matcher agrees with the
+/// recording at twice that noise). `zed` is the harsher profile; use it for claims.
 struct ProfileFigures {
     double noise_dn = 0.0;       ///< noise in addition to the noise of the camera
     double noise_size_px = 0.0;  ///< replaces the noise size of the camera if that size is 0

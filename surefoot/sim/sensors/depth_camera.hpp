@@ -39,7 +39,7 @@ struct DepthCameraConfig {
     double least_return = 0.06;
     bool mixes_edges = false;  ///< true: edge pixels lie between both surfaces (time of flight)
 
-    /// Returns the same camera with every axial error multiplied by `factor`.
+    /// Returns the same camera with the sigma of the axial noise multiplied by `factor`.
     [[nodiscard]] DepthCameraConfig with_noise(double factor) const;
 
     void describe(ConfigVisitor& visitor);

@@ -146,12 +146,12 @@ void ImuNoiseConfig::describe(ConfigVisitor& visitor) {
                    gyro_bias_sigma_rad_s,
                    0.0,
                    1.0,
-                   "one sigma of the gyroscope's bias at the start, drawn per seed");
+                   "one sigma of the gyroscope's bias at the start; the seed draws the bias");
     visitor.number("accel_bias_sigma_m_s2",
                    accel_bias_sigma_m_s2,
                    0.0,
                    10.0,
-                   "one sigma of the accelerometer's bias at the start, drawn per seed");
+                   "one sigma of the accelerometer's bias at the start; the seed draws the bias");
     visitor.number("gyro_walk_rad_s2_sqrt_hz",
                    gyro_walk_rad_s2_sqrt_hz,
                    0.0,

@@ -57,14 +57,14 @@ void LaserScannerConfig::describe(ConfigVisitor& visitor) {
                    max_range_m,
                    0.0,
                    1e4,
-                   "largest range that is measured on a surface of 90 % reflectance");
+                   "largest range that is measured on a surface of 90 % reflectance seen head-on");
     visitor.number(
         "noise_floor_m", noise_floor_m, 0.0, 1.0, "one sigma of the range noise at range 0");
     visitor.number("noise_growth",
                    noise_growth,
                    0.0,
                    0.1,
-                   "growth of the range noise per metre of range, on a white surface");
+                   "growth of the range noise per metre of range, on a white surface seen head-on");
     visitor.number("beam_exit_m", beam_exit_m, 0.0, 0.1, "diameter of the beam at the scanner");
     visitor.number("beam_divergence_rad",
                    beam_divergence_rad,

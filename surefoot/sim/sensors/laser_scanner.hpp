@@ -33,7 +33,7 @@ struct LaserScannerConfig {
     double elevation_max_deg = 90.0;
     double step_deg = 0.036;     ///< beam spacing, 4 x 0.009 deg: 10 000 columns of 4237 points
     double min_range_m = 0.6;    ///< smallest range, along the beam
-    double max_range_m = 120.0;  ///< largest range for 90 % reflectance; shorter if dark or slanted
+    double max_range_m = 120.0;  ///< largest range at 90 % reflectance, head-on; else shorter
     double noise_floor_m = 0.575e-3;
     double noise_growth = 2.94e-5;         ///< share of the range, on a white surface seen head-on
     double beam_exit_m = 0.003;            ///< diameter of the beam at the scanner

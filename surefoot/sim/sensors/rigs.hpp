@@ -19,7 +19,7 @@ inline constexpr double kBodyHeight_m = 0.95;
 [[nodiscard]] std::vector<std::string> rig_presets();
 
 /// A rig on the left armrest of the machine, 0.05 m above base_link, 32 deg down, with an IMU
-/// beside the camera. An unknown name is a usage error that lists the names.
+/// midway between the cameras. An unknown name is a usage error that lists the names.
 ///   zed_vga, zed_hd720, zed_hd1080, zed_hd2k   the ZED's modes with ideal, rectified images
 ///   the same names plus `_rolling`             the same modes, rows read out in turn (`readout_s`)
 ///   duo_mlx                                    fisheye pair with a baseline of 30 mm, raw images

@@ -25,7 +25,7 @@ struct ShadowMap {
 };
 
 struct ShadowConfig {
-    double jump_px = 0.5;       ///< jump between two surfaces, to which `kSlope` is added
+    double jump_px = 0.5;       ///< smallest jump between surfaces, beyond a slope of 0.2 px/px
     double fattening_px = 2.0;  ///< width of the seam beside the nearer surface
     double ramp_px = 8.0;       ///< largest width of a bridge, measured from the jump
 };

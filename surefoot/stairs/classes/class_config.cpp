@@ -37,8 +37,8 @@ void ClassConfig::describe(ConfigVisitor& visitor) {
                    max_sigma_m,
                    0.001,
                    1.0,
-                   "largest height sigma of a cell with a walkable class; with a larger sigma the "
-                   "cell is unknown");
+                   "largest height sigma of a cell with a walkable class; with a larger sigma "
+                   "such a cell becomes unknown");
     visitor.number(
         "reach_m",
         reach_m,

@@ -27,8 +27,8 @@ enum class GroundClass : std::uint8_t {
     ramp,     ///< a reachable plane that is steeper than level ground
     kerb,     ///< like a riser, but at a single edge that is no higher than a kerb
     sill,     ///< a raised cell between the jambs of a door
-    drop,     ///< ground more than stairs.drop_m below any ramp from reachable ground.
-              ///< Unknown cells that rays prove to be so low are drops too.
+    drop,     ///< ground more than stairs.drop_m below any ramp from reachable ground. Also unknown
+              ///< cells that rays prove to be so low, or just behind a drop with unseen bottom.
     wall,     ///< higher than a step, and steep, narrow, on no plane or higher than a table
     table,    ///< a plane no steeper than a ramp, higher than a step and not reachable.
               ///< Examples: table tops, and platforms seen from below.

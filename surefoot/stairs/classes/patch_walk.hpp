@@ -26,11 +26,11 @@ struct NearGround {
 /// matcher can smear a kerb or a table over five cells. Then no step between cells remains, but the
 /// planes keep their distance. Two patches connect where they lie within stairs.classes.max_step_m
 /// over a foot's width, with only an edge and its occluded region between them. They also connect
-/// along a flight of two or more steps. Other links never lead to a patch steeper than
-/// stairs.classes.ramp_deg or of unknown slope.
+/// along a flight of two or more steps. Other links lead only to carrying patches: no steeper
+/// than stairs.classes.ramp_deg, with a slope sigma of at most 5 deg.
 ///
-/// The machine stands on the lowest patch near it that holds a quarter of the known blocks there,
-/// and on patches of that level. Without known ground near it, the nearest known ground counts.
+/// The machine stands on the lowest carrying patch near it that has a quarter of the carrying
+/// blocks there, and on carrying patches of that level. If none is near, the nearest one counts.
 class PatchWalk {
   public:
     explicit PatchWalk(const StairsConfig& config) : config_(config) {}
@@ -42,7 +42,7 @@ class PatchWalk {
     [[nodiscard]] std::span<const NearGround> near_ground() const { return near_; }
 
   private:
-    /// Two patches of one row or column with only blocks on no patch between them.
+    /// Two successive patches of one row or column of blocks; blocks between them are on no patch.
     struct Contact {
         std::int32_t low = 0;  ///< the lower of the two patch numbers
         std::int32_t high = 0;

@@ -16,7 +16,7 @@ namespace surefoot::stairs {
 
 struct PatchConfig {
     double block_m = 0.075;  ///< three cells of 25 mm: a 250 mm tread holds a block at any yaw
-    /// A cell lies on a plane within this distance or within `sigma_factor` of its own sigma, but
+    /// A cell lies on a plane within this distance or within `sigma_factor` times its sigma, but
     /// at most within `max_tolerance_m`: a larger difference is an edge (stairs.min_height_m).
     double tolerance_m = 0.015;
     double sigma_factor = 3.0;
@@ -34,7 +34,7 @@ struct PlanarPatch {
     Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< dz / dx, dz / dy
     double slope_sigma_rad = 0.0;  ///< slope sigma along the narrower side; infinite = unknown
     double rms_m = 0.0;            ///< scatter of its cells about the plane
-    double width_m = 0.0;          ///< smaller side of the rectangle about the cells
+    double width_m = 0.0;  ///< smaller side of a rectangle with the same spread as the cells
     int cells = 0;
 
     [[nodiscard]] double slope_rad() const { return std::atan(gradient.norm()); }

@@ -30,7 +30,7 @@ struct Bottleneck {
 /// that reaches the nearest wall also touches a wall on its opposite side. Such blocks form a line
 /// along a passage. A line longer than `max_depth_m` is a corridor, not a bottleneck.
 ///
-/// A wall is anything `rise_m` or more above the lowest level block within kReach_m.
+/// Walls: blocks `rise_m` or more above the lowest level block within kReach_m, if not isolated.
 ///
 /// Nearest walls: distance transform of Meijster, Roerdink and Hesselink (2000). Its cost is linear
 /// in the number of blocks.

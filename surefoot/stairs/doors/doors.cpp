@@ -560,7 +560,7 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
                    wall_length_m,
                    0.01,
                    10.0,
-                   "smallest length of the wall on either side of a door");
+                   "smallest length of the wall on each side of a door");
     visitor.number(
         "min_sill_m", min_sill_m, 0.0, 1.0, "smallest height of a sill that is reported");
     visitor.number(

@@ -43,14 +43,14 @@ struct DoorConfig {
 /// - yaw: the line through both walls. All wall cells in a band count, not only the first
 ///   ones, because the noise of a wall lies along the ray;
 /// - jambs: a row of cells across the opening (along the nearer grid axis) ends at its first wall
-///   cell. The jamb is the innermost place where many rows end, because noise ends a row farther
-///   from the middle;
+///   cell. The jamb is the innermost place where many rows end, because noise makes other rows
+///   end farther from the middle;
 /// - width: a cell that contains any part of the wall shows the wall (Terrain: highest surface). So
 ///   the first wall cell's centre lies sin(yaw) / 2 cells before the jamb on average (yaw: wall to
 ///   axis); the width is corrected by this. The remaining error is uniform over one cell for a wall
 ///   along the grid, and smaller for an oblique wall;
-/// - sill: the height above the line from the ground before the jambs to the ground behind. Its
-///   sigma counts one independent error per square of `correlation_m`.
+/// - sill: the height above the line between the ground before and behind the jambs, or above both
+///   if they differ by a step. Its sigma counts one independent error per `correlation_m` squared.
 ///
 /// Not found: doors with jambs deeper than `max_depth_m`, or within 0.25 m of a corner.
 /// Owns the working memory: maps of one size allocate nothing after the first few calls.

@@ -33,10 +33,10 @@ struct BorderSearch {
 [[nodiscard]] double upper_tolerance_m(double scatter_m, double rise_m);
 
 /// Walks from the upper ground across the edge, row by row (by column where the line runs along the
-/// rows). Adds the point between two cell centres where the ground falls below its level. The
-/// threshold lies `below_m` under the upper level, see upper_tolerance_m(). Cells before and behind
-/// a distant riser hold points of its face, because depth noise moves these points by several
-/// cells. A cell keeps its highest point.
+/// rows). Adds the point between two cell centres where the ground falls below a threshold:
+/// `below_m` under the upper level, see upper_tolerance_m(). Depth noise moves the points of a
+/// distant riser's face by several cells, and a cell keeps its highest point. So cells before and
+/// behind the riser may hold a height of the face.
 void add_border_points(const Terrain& terrain,
                        const EdgeLine& line,
                        const BorderSearch& search,

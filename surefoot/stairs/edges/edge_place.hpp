@@ -17,7 +17,7 @@ enum class PlaceOfEdge : std::uint8_t {
 /// which matchers spread a step and outside two sigmas of the edge's position.
 [[nodiscard]] PlaceOfEdge place_of(const Edge& edge, const Terrain& terrain);
 
-/// True if the camera sees the point. Without a camera, true if the map knows the cell.
+/// True if the view contains the point (View::shows). Without a view: true if its cell is known.
 [[nodiscard]] bool is_observed(const Terrain& terrain, const Eigen::Vector3d& p_m);
 
 /// True if an end or the middle of the edge lies inside the map.

@@ -20,18 +20,18 @@ struct EdgePoint {
     std::int16_t ix = 0;   ///< column of the upper cell
     std::int16_t iy = 0;
     Side side = Side::plus_x;
-    bool lower_seen = false;  ///< false: `lower_m` is only an upper bound of the ground
+    bool lower_seen = false;  ///< false: `lower_m` is an upper bound or an assumption
     float upper_m = 0.0F;
     float lower_m = 0.0F;
 };
 
 /// Finds points where the ground falls, along all rows and columns, in both directions. For a cell,
 /// `top` is the highest cell up to `smear_m` before it, and `low` is the lowest cell up to
-/// `smear_m` behind it. Behind known ground two more values count for `low`: the next known cell,
-/// if it lies within the occluded region of such an edge, and the free-space bound of the cells in
-/// between. The cell is an edge point under three conditions: top - low reaches the least height
-/// and exceeds the noise; the cell lies above the middle of both; the next cell lies below the
-/// middle or is unknown.
+/// `smear_m` behind it. If unknown cells begin within `smear_m`, two more values count for `low`:
+/// the next known cell, if it lies within the occluded region of an edge of this height, and the
+/// free-space bound of the unknown cells up to `smear_m`. The cell is an edge point if top - low
+/// reaches the least height and exceeds the noise, the cell lies above the middle of both, and the
+/// next cell lies below the middle or is unknown.
 ///
 /// If nothing is known behind the cell although the camera would see continuing ground there
 /// (Terrain::view), the ground ends. It may fall too steeply to be visible.

@@ -15,8 +15,8 @@ namespace surefoot::stairs {
 [[nodiscard]] double overlap_m(const Edge& a, const Edge& b);
 /// True if `piece` belongs to `edge`: a piece of it, or a false line beside a ragged edge.
 [[nodiscard]] bool is_part_of(const Edge& piece, const Edge& edge);
-/// True for a leftover edge of a flight with an unclear far end: it lies between the first and the
-/// last step of `chain`, also in height, and faces their way. `chain`: lowest step first.
+/// True for a leftover edge of a flight with an unclear far end: it lies between the first step of
+/// `chain` and 0.3 m beyond the last, also in height, and faces their way. `chain`: lowest first.
 [[nodiscard]] bool is_among(const Edge& edge, std::span<const Edge> chain);
 /// True for two pieces of one straight line that are at most `max_gap_m` apart.
 [[nodiscard]] bool goes_on(const Edge& edge, const Edge& piece, double max_gap_m);

@@ -43,10 +43,10 @@ struct StepEvidence {
 class StepEvidenceFinder {
   public:
     static constexpr double kSteepest = 0.84;       ///< rise over run of 40 deg
-    static constexpr double kMostBend_per_m = 4.0;  ///< radius of 0.25 m
+    static constexpr double kMostBend_per_m = 4.0;  ///< radius of curvature 0.25 m
 
     explicit StepEvidenceFinder(const StairsConfig& config) : config_(config) {}
-    /// `upper_m`, `lower_m`: depth of the ground used above and below the edge [m].
+    /// `upper_m`, `lower_m`: largest depth of the ground used above and below the edge [m].
     [[nodiscard]] StepEvidence weigh(const Terrain& terrain,
                                      const Edge& edge,
                                      double upper_m,
@@ -108,7 +108,7 @@ class StepEvidenceFinder {
     std::array<std::vector<double>, 2> halves_;  ///< heights of the two halves of a slice
 };
 
-/// True if the likelihood ratio of the edge reaches `StairsConfig::step_ratio`.
+/// True if the likelihood ratio of the edge reaches `StairsConfig::step_ratio`, or if that is 0.
 [[nodiscard]] bool is_step_of(const StairsConfig& config, const Edge& edge);
 
 }  // namespace surefoot::stairs

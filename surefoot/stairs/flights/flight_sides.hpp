@@ -17,7 +17,7 @@ namespace surefoot::stairs {
 /// kind of most known steps. Of two equally frequent kinds, the more dangerous counts.
 ///
 /// A rail is an object 0.75 to 1.1 m above the nosing line (NZ D1/AS1: handrails at 0.9 to 1.0 m)
-/// along at least half of the steps, within a band of 0.1 m. Rails that the map lacks are not
+/// along half of the steps, at least two, within a band of 0.1 m. Rails that the map lacks are not
 /// reported: a camera 1 m high sees a rail only when it looks up to it.
 class FlightSides {
   public:

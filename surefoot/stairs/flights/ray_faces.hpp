@@ -23,12 +23,12 @@ class RayFaces {
 
   private:
     struct Face {
-        double behind_m = 0.0;  ///< distance of the face behind the old edge; 0 = open riser
+        double behind_m = 0.0;  ///< distance of the face behind the old edge; unused if open
         double sigma_m = 0.0;
         bool open = false;
     };
     std::size_t gather(const Terrain& terrain, const Edge& edge, double at_m);
-    /// `level_m`: lean that level ground would show (level_m() in the .cpp file).
+    /// `level_m`: extra distance of the upper half for level ground (level_m() in the .cpp file).
     [[nodiscard]] bool shows_level_ground(double level_m);
     [[nodiscard]] std::optional<Face> see(const Terrain& terrain, const Edge& edge);
 

@@ -15,9 +15,9 @@ struct Drift {
     double yaw_var_rad2 = 0.0;
     double tilt_var_rad2 = 0.0;  ///< the larger variance of the tilts about x and y
 
-    /// Adds the motion of one frame. `relative_covariance`: see MotionEstimate.
+    /// Adds the uncertainty of the motion of one frame. `relative_covariance`: see MotionEstimate.
     void add(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odom_body);
-    /// False if a variance exceeds (1 m)^2 or (1 rad)^2: remembered positions are then unknown.
+    /// False if a variance is above (1 m)^2 or (1 rad)^2 or not finite: positions are then unknown.
     [[nodiscard]] bool is_bounded() const;
 
     /// Position variance at a distance from the machine. `level_var_m2` gives the height variance.

@@ -69,8 +69,8 @@ double lower_difference_m(const Edge& a, const Edge& b) {
     return 0.0;
 }
 
-/// Returns the disagreement of two edges: the sum of the squared differences, each divided by its
-/// gate. Empty if they cannot be the same edge.
+/// Returns the disagreement of two edges: the sum of (difference / gate)^2 for the position across
+/// the edge, the two heights and the direction. Empty if they cannot be the same edge.
 std::optional<double> cost_of(const EdgeTrack& track, const Edge& seen) {
     const Edge& edge = track.edge;
     if (std::abs(seen.upper_m - edge.upper_m) > kMaxHeight_m)

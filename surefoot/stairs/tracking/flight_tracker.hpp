@@ -19,7 +19,7 @@ namespace surefoot::stairs {
 struct FlightTrack {
     static constexpr int kMaxSteps = 64;
 
-    /// Last observed flight with `flight.steps` steps; its values are means of all observations.
+    /// Last observed flight with `flight.steps` steps; its riser, going and width are means.
     Flight flight;
     ObservationWeight riser;
     RobustMean going;
@@ -31,7 +31,7 @@ struct FlightTrack {
     int place_seen = 0;  ///< observations since the last match that see its location
 };
 
-/// Tracks flights; two match if they share half of the shorter flight's edges (see FeatureTracker).
+/// Tracks flights; two match if they share at least half of the shorter one's edges.
 class FlightTracker {
   public:
     explicit FlightTracker(const TrackingConfig& config) : config_(config) {}

@@ -6,7 +6,7 @@ namespace surefoot::stairs {
 /// The weight of a new observation of a quantity, and the sigma of the mean. Observations of one
 /// map are correlated: the map already contains the earlier ones, and wrong matches repeat. So a
 /// mean is steadier than its observations, but not more certain:
-/// - the mean never weighs more than `most_observations` observations of the best sigma;
+/// - the mean counts at most as much as `most_observations` observations with the best sigma;
 /// - its sigma is the best sigma, or the scatter of the observations if that is larger. A lower
 ///   sigma would need independent errors, and the errors of one map are not independent.
 class ObservationWeight {

@@ -8,8 +8,8 @@ namespace surefoot::stairs {
 
 /// Settings of FeatureTracker. Each call with one mapped frame is one observation.
 struct TrackingConfig {
-    /// A mean covers at most this many observations. The map already averages: further observations
-    /// do not steady the mean, and the mean lags behind an approaching feature.
+    /// A mean covers at most this many observations. More would not steady the mean (the map
+    /// already averages), and the mean would lag behind an approaching feature.
     double mean_observations = 4.0;
     /// The going of a flight averages more: it depends on the visible riser faces. Their errors
     /// change between observations, and a going neither drifts nor lags.
