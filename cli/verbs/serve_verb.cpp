@@ -139,8 +139,8 @@ void add_serve(VerbGroup verbs) {
         .value("MB");
     verb.option("--max-rate",
                 o.max_rate_hz,
-                "largest number of messages from one client in a second; the gate answers further "
-                "messages with OVERLOAD")
+                "largest number of messages from one client in a second; the gate refuses further "
+                "messages, and answers further step questions with OVERLOAD")
         .positive()
         .value("HZ");
     verb.option("--attest",

@@ -17,7 +17,7 @@ def sigma_part(out):
              *(f"{r[f'within_{k}']} %" for k in (1, 2, 3)), f"{float(r['auc_sigma']):.3f}", f"{float(r['auc_peak']):.3f}",
              f"{100 * (1 - float(r['auc_sigma']) / float(r['auc_peak'])):+.0f} %"] for r in read(out / "sigma.csv")]
     return ["### Does the stated sigma agree with the errors?", "",
-            "The table gives the share of trusted matches within 1, 2 and 3 stated sigma; the rounding of the truth is added to sigma. "
+            "The table gives the share of trusted matches within 1, 2 and 3 stated sigma, of those that are right within 1 px; the rounding of the truth is added to sigma. "
             "Wanted are 63-73 % within 1 sigma, 90-97 % within 2 sigma and at least 97 % within 3 sigma. "
             "AUC is the area under the sparsification curve of all matches (0 = perfect order). Our order uses sigma and outlier probability; "
             "the other order uses the peak ratio. Rows with \"all\" take the matches of all images of a kind together. "

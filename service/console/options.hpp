@@ -8,7 +8,7 @@
 
 namespace surefoot::app {
 
-/// Exit codes of every verb. The verb `gate` returns kExitUsage only for a wrong command line.
+/// Exit codes of every verb. The verb `gate` returns kExitUsage only for wrong options or files.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;

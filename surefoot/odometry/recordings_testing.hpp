@@ -39,8 +39,8 @@ struct PointRecording {
 /// A folder that render_room.py has written, with its IMU samples.
 [[nodiscard]] std::optional<Recording> rendered_room(const std::string& folder);
 
-/// Corners of the AprilGrid in front of a hand-held EuRoC rig: 1439 frames in two parts with the
-/// grid in view, 1.2 s apart. Truth by PnP. Returns nothing when tar cannot unpack the data.
+/// Corners of the AprilGrid in front of a hand-held EuRoC rig: 1439 frames; 1416 of them show
+/// the grid, in two parts 1.2 s apart. Truth by PnP. Empty if tar cannot unpack the data.
 [[nodiscard]] std::optional<PointRecording> euroc_april();
 
 /// The rig of EuRoC's V1 recordings; its IMU frame is the body frame.

@@ -21,7 +21,7 @@ struct View {
     double cx_px = 0.0;
     double cy_px = 0.0;
     double baseline_m = 0.0;
-    /// Pixels within this distance of unmatched pixels are not mapped (elevation.pixels.reach_px).
+    /// Pixels with unmatched pixels this far away on both sides are not mapped (pixels.reach_px).
     double unmapped_px = 0.0;
 
     /// True if both cameras image the point at least 12 px inside the image. Ignores occlusion.

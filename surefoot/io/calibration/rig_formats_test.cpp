@@ -299,7 +299,7 @@ TEST(RigKalibr, BadValuesNameFileAndKey) {
          "[ 1.1, 0.0, 0.0, -0.11]",
          "cam1.T_cn_cnm1: not a rigid motion"},
         {"0.0, -0.11]", "0.0, 0.11]", "c.yaml: the right camera lies 0.110 m to the left"},
-        {"resolution: [752, 480]", "resolution: [752]", "cam0.resolution: 1 numbers"},
+        {"resolution: [752, 480]", "resolution: [752]", "cam0.resolution: found 1 numbers"},
         {"resolution: [752, 480]",
          "resolution: [320, 240]",
          "c.yaml: left camera: principal point"},
