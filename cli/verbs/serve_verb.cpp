@@ -124,8 +124,9 @@ void add_serve(VerbGroup verbs) {
         .value("TEXT");
     verb.option("--origin",
                 o.origins,
-                "origin whose web pages may ask the gate, for example http://192.0.2.7:8000, null "
-                "or file://. The live page is served under this origin too")
+                "origin whose web pages may ask the gate and connect to the live page's socket, "
+                "for example http://192.0.2.7:8000, null or file://. If the origin has a host "
+                "name, the live page also answers requests to this host")
         .value("URL");
     verb.option("--audit", o.audit_dir, "folder for the audit log of the gate").value("DIR");
     verb.flag("--assured",

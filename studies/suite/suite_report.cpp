@@ -353,7 +353,7 @@ std::string suite_html(std::span<const SuiteResult> results, const std::string& 
                     "noise. The maps are not aligned to the truth before the comparison.",
                     results.size(),
                     rows.size()),
-        "Seeds from 10000 on were never used during development.",
+        "docs/evidence/safety.md names the seeds that were used during development.",
         eval::kConfusionLegend};
     add_key_figures(results, content);
     content.plots_title = "Size and position of the map errors";

@@ -85,8 +85,8 @@ class Odometry {
     [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
     /// Processes a frame that has already passed the frame integrity check.
     [[nodiscard]] MotionEstimate update_whole(const StereoFrame& frame, Executor& executor);
-    /// Tracks the points of another source. Uses `sigma_px` as the noise of every point. A change
-    /// between images and points costs one LOST frame, which seeds new landmarks.
+    /// Tracks the points of another source. All have the same noise: `sigma_px`, or the measured if
+    /// clearly larger. A change between images and points costs a LOST frame (new landmarks).
     [[nodiscard]] MotionEstimate update(const PointFrame& frame);
     /// Replaces `update_whole` for a frame whose images are repeated or torn, as `frame_status`
     /// says. Keeps the frame's IMU samples for the next frame.

@@ -23,8 +23,8 @@ struct SpecularConfig {
     /// Smallest ratio of the best score to the score of any other line of the same direction. Tiled
     /// floors are symmetric about many lines; a mirror makes one line.
     double unique_ratio = 1.4;
-    /// Number of the 41 directions ahead that each frame searches. Each frame searches the same
-    /// number of the 180 directions all around. A search takes about 0.5 ms.
+    /// Each frame searches this many of the 41 directions ahead, and as many of the 180 directions
+    /// all around. One direction takes about 0.5 ms.
     int directions_per_frame = 1;
     double margin_m = 0.02;       ///< cells this far before the line also become unknown
     double side_margin_m = 0.15;  ///< cells this far beside the observed part become unknown too

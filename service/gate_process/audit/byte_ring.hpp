@@ -14,7 +14,7 @@ namespace surefoot::gate_process {
 /// thread calls `front` and `pop`.
 class ByteRing {
   public:
-    /// Allocates and touches all memory. The largest entry can take half of the memory.
+    /// Allocates and touches all memory. An empty ring accepts each entry of up to half of it.
     explicit ByteRing(std::size_t bytes);
 
     /// Returns memory for an entry of `bytes` bytes; nullptr if there is no room.

@@ -19,7 +19,7 @@ namespace surefoot::sim {
 struct SceneTruth {
     Scene scene;
     camera::StereoRig rig;
-    std::vector<StampedPose> trajectory;  ///< one pose per frame; under command only the last
+    std::vector<StampedPose> trajectory;  ///< per frame; if commanded, only of the newest
     std::int64_t start_ns = 0;            ///< stamp of the motion's time 0
     std::vector<StepEvent> steps;         ///< steps of a walking machine
     std::vector<Stop> stops;              ///< stops of a trolley
