@@ -119,15 +119,14 @@ Evidence::Evidence(const TruePair& pair) {
         std::copy_n(row.gradient_grey_px, found_px.width(), gradient_grey_px.row(v));
         std::copy_n(row.shift_px, found_px.width(), shift_px.row(v));
     };
-    stereo::SubpixelRefiner({.lag_rows = stereo::kSearchLag_rows})
-        .refine(pair.left.view(),
-                pair.right.view(),
-                found_px,
-                stereo::Filter::median,
-                jump_distance_px,
-                serial,
-                disparity_px,
-                keep);
+    stereo::SubpixelRefiner({}).refine(pair.left.view(),
+                                       pair.right.view(),
+                                       found_px,
+                                       stereo::Filter::median,
+                                       jump_distance_px,
+                                       serial,
+                                       disparity_px,
+                                       keep);
 }
 
 stereo::MatchEvidence Evidence::at(int u, int v) const {

@@ -145,13 +145,8 @@ Match our_whole(const OurSettings& settings) {
         Serial serial;
         DepthImage depth;
         depth.resize(found_px.width(), found_px.height());
-        stereo::Finisher({.lag_rows = stereo::kSearchLag_rows})
-            .finish(pair.left.view(),
-                    pair.right.view(),
-                    found_px,
-                    stereo::Filter::median,
-                    serial,
-                    depth);
+        stereo::Finisher().finish(
+            pair.left.view(), pair.right.view(), found_px, stereo::Filter::median, serial, depth);
         return depth.disparity_px;
     };
 }

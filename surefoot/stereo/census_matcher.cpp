@@ -22,8 +22,7 @@ class CensusMatcher final : public Matcher {
         : selection_{config.uniqueness_percent,
                      // in range: MatcherConfig::problem() keeps it in 0-16
                      static_cast<int>(std::lround(config.left_right_tolerance_px))},
-          search_(search_config(config)),
-          finisher_({.lag_rows = kSearchLag_rows}) {}
+          search_(search_config(config)) {}
 
     void match(ImageView<const std::uint8_t> left,
                ImageView<const std::uint8_t> right,

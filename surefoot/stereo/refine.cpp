@@ -59,24 +59,17 @@ void smooth_along(const float* row, int width, int radius_px, double same_surfac
     rows::smooth_along({row, before, after, radius_px, width, same_px, out});
 }
 
-void smooth_down(const Image<float>& in,
-                 int v,
-                 int radius_px,
-                 double same_surface_px,
-                 int lag_rows,
-                 float* out) {
-    SUREFOOT_ASSERT(radius_px <= kMaxSmoothRadius_px && lag_rows >= 0);
+void smooth_down(const Image<float>& in, int v, int radius_px, double same_surface_px, float* out) {
+    SUREFOOT_ASSERT(radius_px <= kMaxSmoothRadius_px);
     const float* above[kMaxSmoothRadius_px];
     const float* below[kMaxSmoothRadius_px];
-    const int middle = std::min(v + lag_rows, in.height() - 1);
-    const int steps = std::min({radius_px, middle, in.height() - 1 - middle});
+    const int steps = std::min({radius_px, v, in.height() - 1 - v});
     for (int k = 0; k < steps; ++k) {
-        above[k] = in.row(middle - k - 1);
-        below[k] = in.row(middle + k + 1);
+        above[k] = in.row(v - k - 1);
+        below[k] = in.row(v + k + 1);
     }
     const auto same_px = static_cast<float>(same_surface_px);
-    const float* const ahead = middle == v ? nullptr : in.row(middle);
-    rows::smooth_along({in.row(v), above, below, steps, in.width(), same_px, out, ahead});
+    rows::smooth_along({in.row(v), above, below, steps, in.width(), same_px, out});
 }
 
 SubpixelRefiner::SubpixelRefiner(const RefineConfig& config) : config_(config) {
@@ -128,12 +121,7 @@ void SubpixelRefiner::warp_block(int first,
     row.pairs = pairs.data();
     for (int v = first; v < last; ++v) {
         float* const disparity = disparity_px.row(v);
-        smooth_down(horizontal_,
-                    v,
-                    config_.smooth_radius_px,
-                    config_.same_surface_px,
-                    config_.lag_rows,
-                    disparity);
+        smooth_down(horizontal_, v, config_.smooth_radius_px, config_.same_surface_px, disparity);
         smooth_image_row(left, v, sums, smooth_left.data());
         smooth_image_row(right, v, sums, smooth_right.data() + 1);
         row.disparity_px = disparity;

@@ -12,13 +12,10 @@ namespace surefoot::stereo {
 struct RefineConfig {
     int smooth_radius_px = 4;      ///< averages neighbours on the same surface over 9x9 pixels
     double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
-    /// A search whose paths run down the image but not up follows slanted ground late. The value
-    /// found in a row therefore belongs to the row this many rows farther up.
-    int lag_rows = 0;
-    int window_radius_px = 12;    ///< 25x25 pixels share one correction; the radius is at most 16
-    double prior_sigma_px = 0.2;  ///< prior standard deviation of the smoothed disparity
-    int jump_margin_px = 2;       ///< skips pixels this near to a jump: they show mixed surfaces
-    double max_step_px = 1.0;     ///< largest correction
+    int window_radius_px = 12;     ///< 25x25 pixels share one correction; the radius is at most 16
+    double prior_sigma_px = 0.2;   ///< prior standard deviation of the smoothed disparity
+    int jump_margin_px = 2;        ///< skips pixels this near to a jump: they show mixed surfaces
+    double max_step_px = 1.0;      ///< largest correction
     /// Lower limit of the grey-level noise of a window (1 sigma, after smoothing of the image). The
     /// limit prevents too much trust in a window.
     double min_noise_grey = 0.4;
@@ -94,10 +91,7 @@ class SubpixelRefiner {
 /// Averages the neighbours on the same surface along a row. Neighbours count in opposite pairs, so
 /// that a slanted plane keeps its value. `row` has `radius_px` unknown pixels before and after it.
 void smooth_along(const float* row, int width, int radius_px, double same_surface_px, float* out);
-/// Averages down the columns for row `v`; near the image border fewer neighbours count. With
-/// `lag_rows`, averages around row `v + lag_rows` instead. The centre stays row `v` where both rows
-/// differ by more than half of `same_surface_px`, so edges stay in place.
-void smooth_down(
-    const Image<float>& in, int v, int radius_px, double same_surface_px, int lag_rows, float* out);
+/// Averages down the columns for row `v`; near the image border fewer neighbours count.
+void smooth_down(const Image<float>& in, int v, int radius_px, double same_surface_px, float* out);
 
 }  // namespace surefoot::stereo

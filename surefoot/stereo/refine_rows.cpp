@@ -57,21 +57,16 @@ void smooth_image_row(const std::uint8_t* const in[5],
 }
 
 /// Averages the lanes from `u` on with their neighbours in `steps` lines on either side.
-template <bool kAhead, class D>
+template <class D>
 HWY_INLINE void smooth_here(D d, const SmoothRow& row, int steps, int u) {
-    auto center = hn::LoadU(d, row.center + u);
+    const auto center = hn::LoadU(d, row.center + u);
     const auto limit = hn::Set(d, row.same_surface_px);
-    // NaN compares false, here and below.
-    if constexpr (kAhead) {
-        const auto ahead = hn::LoadU(d, row.ahead + u);
-        const auto near = hn::Mul(limit, hn::Set(d, 0.5F));
-        center = hn::IfThenElse(hn::Le(hn::Abs(hn::Sub(ahead, center)), near), ahead, center);
-    }
     auto sum = hn::Zero(d);
     auto count = hn::Set(d, 1.0F);
     for (int k = 0; k < steps; ++k) {
         const auto low = hn::Sub(hn::LoadU(d, row.before[k] + u), center);
         const auto high = hn::Sub(hn::LoadU(d, row.after[k] + u), center);
+        // NaN compares false.
         const auto same = hn::And(hn::Le(hn::Abs(low), limit), hn::Le(hn::Abs(high), limit));
         sum = hn::Add(sum, hn::IfThenElseZero(same, hn::Add(low, high)));
         count = hn::Add(count, hn::IfThenElseZero(same, hn::Set(d, 2.0F)));
@@ -80,10 +75,7 @@ HWY_INLINE void smooth_here(D d, const SmoothRow& row, int steps, int u) {
 }
 
 void smooth_along_row(const SmoothRow& row) {
-    if (row.ahead == nullptr)
-        for_columns(0, row.width, [&](auto d, int u) { smooth_here<false>(d, row, row.steps, u); });
-    else
-        for_columns(0, row.width, [&](auto d, int u) { smooth_here<true>(d, row, row.steps, u); });
+    for_columns(0, row.width, [&](auto d, int u) { smooth_here(d, row, row.steps, u); });
 }
 
 /// Writes the position in the right row of the lanes from `u` on: whole pixel (0 = outside the row

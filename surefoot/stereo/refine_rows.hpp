@@ -25,9 +25,6 @@ struct SmoothRow {
     int width = 0;
     float same_surface_px = 0.0F;
     float* out = nullptr;
-    /// Optional row that replaces `center` where both differ by at most half of `same_surface_px`.
-    /// `before` and `after` are the neighbours of this row.
-    const float* ahead = nullptr;
 };
 /// Does the work of stereo::smooth_along and smooth_down.
 void smooth_along(const SmoothRow& row);

@@ -24,17 +24,6 @@ int lanes() {
     return static_cast<int>(hn::Lanes(kBytes));
 }
 
-/// True if the first path stores the matching costs for the other paths. Without byte-wise
-/// population counts, a matching cost takes longer than the rest of a step. The stored costs are
-/// transposed with the sums.
-constexpr bool kMatchKept = HWY_TARGET > HWY_AVX3_DL;
-
-/// True for targets that count bits by table look-up, four bits at a time. The bytes a b c d of a
-/// census word are stored so that six look-ups are enough instead of eight. Byte c becomes a ^ b ^
-/// c (see count_bits), and the six bits of d leave bits 3 and 7 free.
-constexpr bool kLookedUp = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 ||
-                           HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3;
-
 void census_row(const std::uint8_t* grey,
                 std::ptrdiff_t stride,
                 int width,
@@ -42,20 +31,15 @@ void census_row(const std::uint8_t* grey,
     constexpr auto kWindow = census_window();
     for (int u = 0; u < width; u += lanes()) {
         const Bytes center = hn::LoadU(kBytes, grey + u);
-        Bytes odd = hn::Zero(kBytes);
-        for (int byte = 0; byte < kCensusBytes; ++byte) {
+        for (std::size_t byte = 0; byte < kCensusBytes; ++byte) {
             Bytes word = hn::Zero(kBytes);
-            for (std::size_t bit = 0; bit < 8; ++bit) {
-                const std::size_t index = 8 * static_cast<std::size_t>(byte) + bit;
-                if (index >= kWindow.size()) break;
-                const Bytes neighbour =
-                    hn::LoadU(kBytes, grey + u + kWindow[index].du + kWindow[index].dv * stride);
-                const std::size_t place = kLookedUp && byte == 3 && bit >= 3 ? bit + 1 : bit;
-                const Bytes flag = hn::Set(kBytes, static_cast<std::uint8_t>(1U << place));
+            for (std::size_t bit = 0; bit < 8 && 8 * byte + bit < kWindow.size(); ++bit) {
+                const CensusNeighbour at = kWindow[8 * byte + bit];
+                const Bytes neighbour = hn::LoadU(kBytes, grey + u + at.du + at.dv * stride);
+                const Bytes flag = hn::Set(kBytes, static_cast<std::uint8_t>(1U << bit));
                 word = hn::Or(word, hn::IfThenElseZero(hn::Lt(neighbour, center), flag));
             }
-            odd = hn::Xor(odd, word);
-            hn::StoreU(kLookedUp && byte == 2 ? odd : word, kBytes, out[byte] + u);
+            hn::StoreU(word, kBytes, out[byte] + u);
         }
     }
 }
@@ -129,7 +113,7 @@ void transpose_block(const std::uint8_t* in,
 /// This function is separate from transpose_block, because its constant strides save address
 /// arithmetic.
 HWY_NOINLINE void turn_sums(std::uint8_t* plane) {
-    turn(plane, kSumsColumn, plane - kSumsGroup, kSumsColumn);
+    turn(plane, kCostLine, plane - kCostGroup, kCostLine);
 }
 
 /// Shifts each byte to the right. x86 has no instruction that shifts single bytes.
@@ -152,56 +136,53 @@ HWY_INLINE Bytes jump_penalty(const Penalties& penalties, Bytes grey, Bytes grey
 }
 
 struct Word {
-    Bytes byte0, byte1, byte2, byte3;
+    Bytes byte0, byte1;
 };
 
-#if HWY_TARGET != HWY_SCALAR
-/// Returns the number of bits set in a, b, c and d, given odd = a ^ b ^ c. A bit of `odd` is set if
-/// one or three of a, b, c are set at this position; a bit of `pair` is set if two or three are
-/// set. A look-up uses bits 0 to 3 and needs bit 7 clear. d needs no mask, because its bits 3 and 7
-/// are clear.
-[[maybe_unused]] HWY_INLINE Bytes count_bits(Bytes a, Bytes b, Bytes odd, Bytes d) {
-    HWY_ALIGN static constexpr std::uint8_t kCounts[16] = {
-        0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
-    const Bytes counts = hn::LoadDup128(kBytes, kCounts);
-    const Bytes low = hn::Set(kBytes, std::uint8_t{15});
-    const hn::Repartition<std::uint16_t, decltype(kBytes)> wider;
-    const auto upper = [&](Bytes value) {
-        return hn::BitCast(kBytes, hn::ShiftRight<4>(hn::BitCast(wider, value)));
-    };
-    const auto count = [&](Bytes value) { return hn::TableLookupBytes(counts, value); };
-    const auto count_all = [&](Bytes value) {
-        return hn::Add(count(hn::And(value, low)), count(hn::And(upper(value), low)));
-    };
-    const Bytes pair = hn::Xor(a, hn::And(hn::Xor(a, b), hn::Xor(b, odd)));
-    const Bytes pairs = count_all(pair);
-    const Bytes rest = hn::Add(count_all(odd), hn::Add(count(d), count(upper(d))));
-    return hn::Add(rest, hn::Add(pairs, pairs));
-}
-#endif
-
 HWY_INLINE Bytes distance(const Word& a, const Word& b) {
-    const Bytes byte0 = hn::Xor(a.byte0, b.byte0);
-    const Bytes byte1 = hn::Xor(a.byte1, b.byte1);
-    const Bytes byte2 = hn::Xor(a.byte2, b.byte2);
-    const Bytes byte3 = hn::Xor(a.byte3, b.byte3);
-#if HWY_TARGET != HWY_SCALAR
-    if constexpr (kLookedUp) return count_bits(byte0, byte1, byte2, byte3);
-#endif
-    return hn::Add(hn::Add(hn::PopulationCount(byte0), hn::PopulationCount(byte1)),
-                   hn::Add(hn::PopulationCount(byte2), hn::PopulationCount(byte3)));
+    return hn::Add(hn::PopulationCount(hn::Xor(a.byte0, b.byte0)),
+                   hn::PopulationCount(hn::Xor(a.byte1, b.byte1)));
 }
 
 HWY_INLINE Word word_at(const std::uint8_t* place) {
-    return {hn::Load(kBytes, place),
-            hn::Load(kBytes, place + kLanes),
-            hn::Load(kBytes, place + 2 * kLanes),
-            hn::Load(kBytes, place + 3 * kLanes)};
+    return {hn::Load(kBytes, place), hn::Load(kBytes, place + kLanes)};
+}
+
+/// Loads half as many bytes as there are lanes, each into two lanes.
+HWY_INLINE Bytes load_twice(const std::uint8_t* from) {
+#if HWY_TARGET == HWY_SCALAR
+    return hn::Load(kBytes, from);
+#else
+    const hn::Half<decltype(kBytes)> half;
+    const hn::Repartition<std::uint16_t, decltype(kBytes)> pairs;
+    const auto wide = hn::PromoteTo(pairs, hn::LoadU(half, from));
+    return hn::BitCast(kBytes, hn::Or(wide, hn::ShiftLeft<8>(wide)));
+#endif
+}
+
+void spread_prior_here(const PriorBlock& block, int line, int begin, int end, std::uint8_t* out) {
+    const Bytes outside = hn::Set(kBytes, block.outside);
+    const std::uint8_t* const costs = block.costs + line * kCostLine;
+    for (int lane = 0; lane < kLanes; lane += lanes()) {
+        const auto prior = [&](int d) {
+            d = std::min(d, block.disparities - 1);
+            return d < block.begin || d >= block.end ? outside
+                                                     : load_twice(costs + cost_at(d) + lane / 2);
+        };
+        Bytes here = prior(begin / 2);
+        for (int d = begin; d < end; d += 2) {
+            const Bytes next = prior(d / 2 + 1);
+            std::uint8_t* const to = out + (d - begin) * kLanes + lane;
+            hn::Store(here, kBytes, to);
+            if (d + 1 < end) hn::Store(hn::AverageRound(here, next), kBytes, to + kLanes);
+            here = next;
+        }
+    }
 }
 
 /// Prefetch distance for memory that is written without being read before. Without the prefetch,
 /// every cache line would wait for memory.
-constexpr std::ptrdiff_t kCalledAhead = std::ptrdiff_t{2} * kSumsGroup;
+constexpr std::ptrdiff_t kCalledAhead = std::ptrdiff_t{2} * kCostGroup;
 
 /// Returns the least path cost without the matching cost. The disparity stays, changes by one, or
 /// jumps. Additions saturate. The entry beyond the last disparity is 255.
@@ -211,21 +192,6 @@ HWY_INLINE Bytes cheapest(Bytes below, Bytes here, Bytes above, Bytes slope, Byt
 }
 
 enum class Sums : std::uint8_t { left_alone, written, added_to };
-
-/// Stores the cost of one disparity of one column, to which `sum` and `match` point.
-template <Sums kSums>
-HWY_INLINE void put_down(Bytes cost, Bytes matching, std::uint8_t* sum, std::uint8_t* match) {
-    if constexpr (kSums == Sums::written) {
-        hwy::Prefetch(sum + kCalledAhead);
-        hn::Store(cost, kBytes, sum);
-        if constexpr (kMatchKept) {
-            hwy::Prefetch(match + kCalledAhead);
-            hn::Store(matching, kBytes, match);
-        }
-    }
-    if constexpr (kSums == Sums::added_to)
-        hn::Store(hn::Add(cost, hn::Load(kBytes, sum)), kBytes, sum);
-}
 
 /// Moves a path to its next column `u`, in the lanes from `lane` on.
 template <Sums kSums>
@@ -241,30 +207,39 @@ HWY_INLINE void follow_column(const RowBlock& block,
                                             hn::Load(kBytes, block.grey + u * kLanes + lane),
                                             hn::Load(kBytes, grey_before + lane)));
     const Word left = word_at(block.left + u * kCensusRow + lane);
-    const std::uint8_t* right = block.right + u * kCensusRow + lane;
-    std::uint8_t* state = block.state + lane;
+    const std::uint8_t* right = block.right + (u - block.begin) * kCensusRow + lane;
+    const std::uint8_t* prior = block.prior_costs + lane;
+    std::uint8_t* state = block.state + block.begin * kLanes + lane;
     Bytes below = none;
     Bytes here = hn::Load(kBytes, state);
     Bytes new_least = none;
-    for (int first = 0; first < block.disparities; first += kGroup) {
-        const int count = std::min(kGroup, block.disparities - first);
-        const std::ptrdiff_t place = first / kGroup * kSumsGroup + u * kSumsColumn + lane;
+    for (int first = block.begin; first < block.end; first += kGroup) {
+        const int count = std::min(kGroup, block.end - first);
+        const std::ptrdiff_t place = cost_at(first - block.begin) + u * kCostLine + lane;
         std::uint8_t* const sums = block.sums + place;
         std::uint8_t* const matches = block.match + place;
         for (std::ptrdiff_t at = 0; at < count * kLanes; at += kLanes) {
             const Bytes above = hn::Load(kBytes, state + kLanes);
-            const Bytes match = kMatchKept && kSums == Sums::added_to
-                                    ? hn::Load(kBytes, matches + at)
-                                    : distance(left, word_at(right));
+            const Bytes match = kSums == Sums::added_to ? hn::Load(kBytes, matches + at)
+                                                        : hn::Add(distance(left, word_at(right)),
+                                                                  hn::Load(kBytes, prior));
             const Bytes cost =
                 hn::Add(hn::Sub(cheapest(below, here, above, slope, jump), least), match);
             hn::Store(cost, kBytes, state);
-            put_down<kSums>(cost, match, sums + at, matches + at);
+            if constexpr (kSums == Sums::written) {
+                hwy::Prefetch(sums + at + kCalledAhead);
+                hn::Store(cost, kBytes, sums + at);
+                hwy::Prefetch(matches + at + kCalledAhead);
+                hn::Store(match, kBytes, matches + at);
+            }
+            if constexpr (kSums == Sums::added_to)
+                hn::Store(hn::Add(cost, hn::Load(kBytes, sums + at)), kBytes, sums + at);
             new_least = hn::Min(new_least, cost);
             below = here;
             here = above;
             state += kLanes;
             right -= kCensusRow;
+            prior += kLanes;
         }
     }
     hn::Store(new_least, kBytes, block.least + lane);
@@ -275,6 +250,8 @@ void follow(const RowBlock& block) {
     const std::uint8_t* grey_before = block.grey_before;
     for (int i = 0; i < block.columns; ++i) {
         const std::ptrdiff_t u = kSums == Sums::added_to ? block.columns - 1 - i : i;
+        if (kSums != Sums::added_to && i % 2 == 0 && block.prior.costs != nullptr)
+            spread_prior_here(block.prior, i / 2, block.begin, block.end, block.prior_costs);
         for (int lane = 0; lane < kLanes; lane += lanes())
             follow_column<kSums>(block, u, grey_before, lane);
         grey_before = block.grey + u * kLanes;
@@ -291,21 +268,13 @@ void follow_right_here(const RowBlock& block) {
 
 void follow_left_here(const RowBlock& block) {
     follow<Sums::added_to>(block);
-    for (int d = 0; d < block.disparities; ++d) {
-        const std::ptrdiff_t plane = d / kGroup * kSumsGroup + d % kGroup * kLanes;
-        turn_sums(block.sums + plane);
-        if constexpr (kMatchKept) turn_sums(block.match + plane);
+    for (int d = 0; d < block.end - block.begin; ++d) {
+        turn_sums(block.sums + cost_at(d));
+        turn_sums(block.match + cost_at(d));
     }
 }
 
-HWY_INLINE Word word_of(const std::uint8_t* const bytes[kCensusBytes], std::ptrdiff_t at) {
-    return {hn::LoadU(kBytes, bytes[0] + at),
-            hn::LoadU(kBytes, bytes[1] + at),
-            hn::LoadU(kBytes, bytes[2] + at),
-            hn::LoadU(kBytes, bytes[3] + at)};
-}
-
-/// The best disparity so far, in a scan over disparities from 0 upward.
+/// The best disparity so far, in a scan over disparities upward.
 struct Winner {
     Bytes disparity, cost, cost_below, cost_above;
     Bytes second;  ///< least cost at least two away from the winner
@@ -314,15 +283,15 @@ struct Winner {
     Bytes next;                            ///< next disparity of the scan
     hn::Mask<decltype(kBytes)> older_won;  ///< the last disparity is not the winner
 
-    HWY_INLINE explicit Winner(Bytes none)
-        : disparity(hn::Zero(kBytes)),
+    HWY_INLINE Winner(Bytes none, Bytes first)
+        : disparity(first),
           cost(none),
           cost_below(none),
           cost_above(none),
           second(none),
           older(none),
           last(none),
-          next(hn::Zero(kBytes)),
+          next(first),
           older_won(hn::Eq(none, none)) {}
 
     HWY_INLINE void see(Bytes sum) {
@@ -339,7 +308,7 @@ struct Winner {
         older_won = stays;
         next = hn::Add(next, hn::Set(kBytes, std::uint8_t{1}));
     }
-    HWY_INLINE void store(const WinnerRows& out, int lane, Bytes none) const {
+    HWY_INLINE void store(const WinnerRows& out, std::ptrdiff_t lane, Bytes none) const {
         hn::StoreU(disparity, kBytes, out.disparity + lane);
         hn::StoreU(cost, kBytes, out.cost + lane);
         hn::StoreU(cost_below, kBytes, out.cost_below + lane);
@@ -348,51 +317,118 @@ struct Winner {
     }
 };
 
-/// Does one step of the path from above and finds the winner of all three paths.
-void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
+/// Moves a path down or up by one row in the lanes from `lane` on. `match(d)` returns the matching
+/// cost of a disparity; `use(d, cost)` receives the path cost.
+template <class Match, class Use>
+HWY_INLINE void follow_lanes(const ColumnStep& step,
+                             std::ptrdiff_t lane,
+                             const Match& match,
+                             const Use& use) {
     const Bytes slope = hn::Set(kBytes, step.penalties.slope);
     const Bytes none = hn::Set(kBytes, std::uint8_t{255});
-    std::uint8_t* state = step.state + lane;
+    std::uint8_t* state = step.state + step.begin * kLanes + lane;
     const Bytes least = hn::Load(kBytes, step.least + lane);
     const Bytes jump = hn::Add(least,
                                jump_penalty(step.penalties,
                                             hn::LoadU(kBytes, step.grey + lane),
-                                            hn::LoadU(kBytes, step.grey_above + lane)));
-    const Word left = word_of(step.left, lane);
-    // Local copies, because the compiler must assume that the stores below change `step`.
-    const std::uint8_t* const right[kCensusBytes] = {
-        step.right[0] + lane, step.right[1] + lane, step.right[2] + lane, step.right[3] + lane};
-    const int disparities = step.disparities;
+                                            hn::LoadU(kBytes, step.grey_before + lane)));
+    // A local copy, because the compiler must assume that the stores below change `step`.
+    const int count = step.end - step.begin;
     Bytes below = none;
     Bytes here = hn::Load(kBytes, state);
     Bytes new_least = none;
-    Winner winner(none);
-    for (int first = 0; first < disparities; first += kGroup) {
-        const int last = std::min(first + kGroup, disparities);
-        const std::uint8_t* sum = step.sums + first / kGroup * kSumsGroup + lane;
-        const std::uint8_t* kept = step.match + first / kGroup * kSumsGroup + lane;
-        for (std::ptrdiff_t d = first; d < last; ++d) {
+    for (int first = 0; first < count; first += kGroup) {
+        const std::ptrdiff_t group = cost_at(first) + lane;
+        const int last = std::min(kGroup, count - first);
+        for (std::ptrdiff_t k = 0; k < last; ++k) {
             const Bytes above = hn::Load(kBytes, state + kLanes);
-            const Bytes match =
-                kMatchKept ? hn::Load(kBytes, kept) : distance(left, word_of(right, -d));
-            const Bytes cost =
-                hn::Add(hn::Sub(cheapest(below, here, above, slope, jump), least), match);
+            const Bytes cost = hn::Add(hn::Sub(cheapest(below, here, above, slope, jump), least),
+                                       match(first + k, group + k * kLanes));
             hn::Store(cost, kBytes, state);
-            winner.see(hn::Add(cost, hn::Load(kBytes, sum)));
+            use(first + k, group + k * kLanes, cost);
             new_least = hn::Min(new_least, cost);
             below = here;
             here = above;
             state += kLanes;
-            sum += kLanes;
-            kept += kLanes;
         }
     }
     hn::Store(new_least, kBytes, step.least + lane);
-    winner.store(out, lane, none);
 }
 
-void follow_columns_here(const ColumnStep& step, const WinnerRows& out) {
-    for (int lane = 0; lane < kLanes; lane += lanes()) follow_lanes(step, lane, out);
+void pass_row_here(const ColumnStep& step) {
+    for (std::ptrdiff_t lane = 0; lane < kLanes; lane += lanes()) {
+        const Word left{hn::LoadU(kBytes, step.left[0] + lane),
+                        hn::LoadU(kBytes, step.left[1] + lane)};
+        const std::uint8_t* const right0 = step.right[0] + lane - step.begin;
+        const std::uint8_t* const right1 = step.right[1] + lane - step.begin;
+        const std::uint8_t* const prior = step.prior_costs + lane;
+        follow_lanes(
+            step,
+            lane,
+            [=](std::ptrdiff_t k, std::ptrdiff_t) {
+                const Word right{hn::LoadU(kBytes, right0 - k), hn::LoadU(kBytes, right1 - k)};
+                return hn::Add(distance(left, right), hn::Load(kBytes, prior + k * kLanes));
+            },
+            [](std::ptrdiff_t, std::ptrdiff_t, Bytes) {});
+    }
+}
+
+void follow_row_here(const ColumnStep& step) {
+    const std::uint8_t* const match = step.match;
+    std::uint8_t* const sums = step.sums;
+    for (std::ptrdiff_t lane = 0; lane < kLanes; lane += lanes()) {
+        follow_lanes(
+            step,
+            lane,
+            [=](std::ptrdiff_t, std::ptrdiff_t at) { return hn::Load(kBytes, match + at); },
+            [=](std::ptrdiff_t, std::ptrdiff_t at, Bytes cost) {
+                hn::Store(hn::SaturatedAdd(cost, hn::Load(kBytes, sums + at)), kBytes, sums + at);
+            });
+    }
+}
+
+void finish_row_here(const ColumnStep& step, const WinnerRows& out) {
+    const std::uint8_t* const match = step.match;
+    const std::uint8_t* const sums = step.sums;
+    const Bytes none = hn::Set(kBytes, std::uint8_t{255});
+    for (std::ptrdiff_t lane = 0; lane < kLanes; lane += lanes()) {
+        Winner winner(none, hn::Set(kBytes, static_cast<std::uint8_t>(step.begin)));
+        follow_lanes(
+            step,
+            lane,
+            [=](std::ptrdiff_t, std::ptrdiff_t at) { return hn::Load(kBytes, match + at); },
+            [=, &winner](std::ptrdiff_t, std::ptrdiff_t at, Bytes cost) {
+                winner.see(hn::SaturatedAdd(cost, hn::Load(kBytes, sums + at)));
+            });
+        winner.store(out, lane, none);
+    }
+}
+
+void finish_prior_row_here(const ColumnStep& step, const PriorRow& out) {
+    const std::uint8_t* const match = step.match;
+    const std::uint8_t* const sums = step.sums;
+    const int count = step.end - step.begin;
+    for (std::ptrdiff_t lane = 0; lane < kLanes; lane += lanes()) {
+        std::uint8_t* const kept = out.sums + lane;
+        Bytes least = hn::Set(kBytes, std::uint8_t{255});
+        follow_lanes(
+            step,
+            lane,
+            [=](std::ptrdiff_t, std::ptrdiff_t at) { return hn::Load(kBytes, match + at); },
+            [=, &least](std::ptrdiff_t k, std::ptrdiff_t at, Bytes cost) {
+                const Bytes sum = hn::SaturatedAdd(cost, hn::Load(kBytes, sums + at));
+                hn::Store(sum, kBytes, kept + k * kLanes);
+                least = hn::Min(least, sum);
+            });
+        for (std::ptrdiff_t k = 0; k < count; ++k) {
+            const Bytes above_least = hn::Sub(hn::Load(kBytes, kept + k * kLanes), least);
+            std::uint8_t* const nearest = out.nearest + k * kLanes + lane;
+            hn::Store(hn::Min(above_least, hn::Load(kBytes, nearest)), kBytes, nearest);
+            hn::Store(shift_right(above_least, out.shift),
+                      kBytes,
+                      out.costs + cost_at(static_cast<int>(k)) + lane);
+        }
+    }
 }
 
 }  // namespace
@@ -404,10 +440,14 @@ namespace surefoot::stereo::kernels {
 
 HWY_EXPORT(census_row);
 HWY_EXPORT(transpose_block);
+HWY_EXPORT(spread_prior_here);
 HWY_EXPORT(pass_right_here);
 HWY_EXPORT(follow_right_here);
 HWY_EXPORT(follow_left_here);
-HWY_EXPORT(follow_columns_here);
+HWY_EXPORT(pass_row_here);
+HWY_EXPORT(follow_row_here);
+HWY_EXPORT(finish_row_here);
+HWY_EXPORT(finish_prior_row_here);
 
 void census(const std::uint8_t* grey,
             std::ptrdiff_t stride,
@@ -421,11 +461,21 @@ void transpose(const std::uint8_t* in,
                std::ptrdiff_t out_stride) {
     HWY_DYNAMIC_DISPATCH(transpose_block)(in, in_stride, out, out_stride);
 }
+void spread_prior(const PriorBlock& block, int line, int begin, int end, std::uint8_t* out) {
+    HWY_DYNAMIC_DISPATCH(spread_prior_here)(block, line, begin, end, out);
+}
 void begin_path(int disparities, std::uint8_t* state, std::uint8_t* least) {
-    const auto size = static_cast<std::size_t>(disparities) * kLanes;
-    std::memset(state, 0, size);
-    std::memset(state + size, 255, kLanes);
+    std::memset(state, 0, static_cast<std::size_t>(disparities) * kLanes);
     std::memset(least, 0, kLanes);
+}
+void enter_range(std::uint8_t* state, int old_begin, int old_end, int begin, int end) {
+    const auto close = [&](int from, int to) {
+        if (from < to)
+            std::memset(state + from * kLanes, 255, static_cast<std::size_t>(to - from) * kLanes);
+    };
+    close(begin, std::min(end, old_begin));
+    close(std::max(begin, old_end), end);
+    close(end, end + 1);
 }
 void pass_right(const RowBlock& block) {
     HWY_DYNAMIC_DISPATCH(pass_right_here)(block);
@@ -436,8 +486,17 @@ void follow_right(const RowBlock& block) {
 void follow_left(const RowBlock& block) {
     HWY_DYNAMIC_DISPATCH(follow_left_here)(block);
 }
-void follow_columns(const ColumnStep& step, const WinnerRows& out) {
-    HWY_DYNAMIC_DISPATCH(follow_columns_here)(step, out);
+void pass_row(const ColumnStep& step) {
+    HWY_DYNAMIC_DISPATCH(pass_row_here)(step);
+}
+void follow_row(const ColumnStep& step) {
+    HWY_DYNAMIC_DISPATCH(follow_row_here)(step);
+}
+void finish_row(const ColumnStep& step, const WinnerRows& out) {
+    HWY_DYNAMIC_DISPATCH(finish_row_here)(step, out);
+}
+void finish_prior_row(const ColumnStep& step, const PriorRow& out) {
+    HWY_DYNAMIC_DISPATCH(finish_prior_row_here)(step, out);
 }
 
 }  // namespace surefoot::stereo::kernels

@@ -42,7 +42,10 @@ constexpr struct {
               {70, 68, 21},
               {150, 40, 96},
               {40, 130, 256},
-              {130, 330, 16}};
+              {130, 330, 16},
+              {400, 70, 40},
+              {471, 129, 64},
+              {830, 66, 96}};
 
 TEST(SemiGlobal, FastIsPlainOnEveryProcessor) {
     for (const auto& c : kCases) {
@@ -157,7 +160,7 @@ TEST(SemiGlobalConfig, SaysWhatIsWrong) {
     EXPECT_FALSE(SemiGlobalConfig{}.problem());
     EXPECT_TRUE(SemiGlobalConfig{257}.problem());
     SemiGlobalConfig steep;
-    steep.jump_penalty = 55;
+    steep.jump_penalty = 101;
     EXPECT_TRUE(steep.problem());
     steep.jump_penalty = 5;
     EXPECT_TRUE(steep.problem());
