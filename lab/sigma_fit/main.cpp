@@ -18,13 +18,11 @@
 #include <string>
 #include <vector>
 
+#include "lab/stereo_pairs/match_evidence.hpp"
 #include "lab/stereo_pairs/rival_matchers.hpp"
 #include "lab/stereo_pairs/stereo_pairs.hpp"
 #include "service/console/log.hpp"
 #include "surefoot/stereo/confidence.hpp"
-#include "surefoot/stereo/consistency.hpp"
-#include "surefoot/stereo/refine.hpp"
-#include "surefoot/stereo/semi_global.hpp"
 
 namespace surefoot::experiments {
 namespace {
@@ -93,56 +91,10 @@ std::array<double, 5> terms_of(const stereo::MatchEvidence& evidence) {
             square(static_cast<double>(evidence.unknown_share))};
 }
 
-/// Data of the refinement and of its neighbourhood for every match, collected as in Finisher.
-struct Evidence {
-    explicit Evidence(const TruePair& pair);
-    [[nodiscard]] stereo::MatchEvidence at(int u, int v) const;
-
-    Image<float> disparity_px, residual_grey, gradient_grey_px, shift_px;
-    Image<std::uint8_t> jump_distance_px;
-    stereo::UnknownCounts unknown;
-};
-
-Evidence::Evidence(const TruePair& pair) {
-    constexpr double kJump_px = 1.0;
-    constexpr int kNeighbourhoodRadius_px = 4;
-    const Image<float> found_px = selected_px({}, pair);
-    Serial serial;
-    Image<std::uint8_t> jumps;
-    stereo::mark_jumps(serial, found_px, kJump_px, jumps);
-    stereo::distance_to_marks(serial, jumps, jump_distance_px);
-    stereo::count_unknown(serial, found_px, kNeighbourhoodRadius_px, unknown);
-    for (Image<float>* image : {&disparity_px, &residual_grey, &gradient_grey_px, &shift_px})
-        image->resize(found_px.width(), found_px.height());
-    const auto keep = [&](int v, const stereo::RefinedRow& row) {
-        std::copy_n(row.residual_grey, found_px.width(), residual_grey.row(v));
-        std::copy_n(row.gradient_grey_px, found_px.width(), gradient_grey_px.row(v));
-        std::copy_n(row.shift_px, found_px.width(), shift_px.row(v));
-    };
-    stereo::SubpixelRefiner({}).refine(pair.left.view(),
-                                       pair.right.view(),
-                                       found_px,
-                                       stereo::Filter::median,
-                                       jump_distance_px,
-                                       serial,
-                                       disparity_px,
-                                       keep);
-}
-
-stereo::MatchEvidence Evidence::at(int u, int v) const {
-    const int area = stereo::window_span(u, unknown.radius_px, disparity_px.width()) *
-                     stereo::window_span(v, unknown.radius_px, disparity_px.height());
-    return {residual_grey.at(u, v),
-            gradient_grey_px.at(u, v),
-            shift_px.at(u, v),
-            jump_distance_px.at(u, v),
-            static_cast<float>(unknown.pixels.at(u, v)) / static_cast<float>(area)};
-}
-
 /// Collects trusted matches that are right within 1 px. Returns an error if the formula above
 /// differs from match_sigma_px.
 Result<Seen> see(const TruePair& pair) {
-    const Evidence evidence(pair);
+    const PairEvidence evidence(pair);
     Seen seen{pair.name, pair.step_px * pair.step_px / 12.0, 1.0, {}};
     int count = 0;
     for (int v = 0; v < pair.truth_px.height(); ++v) {

@@ -42,13 +42,13 @@ Image<float> opencv_disparities(cv::StereoMatcher& matcher, const TruePair& pair
     return disparity_px;
 }
 
-// The ranges of our matcher and of SGBM were shifted once, because the best setting on the tuning
-// images was at the border of the range. The jump penalty of our matcher cannot exceed 54.
+// The ranges of SGBM were shifted once, because the best setting on the tuning images was at the
+// border of the range.
 std::vector<Setting> settings_of_ours(Match (*match)(const OurSettings&)) {
     std::vector<Setting> all;
-    for (const int slope : {8, 11, 15})
-        for (const int jump : {44, 54})
-            for (const int least : {2, 6, 10})
+    for (const int slope : {10, 13, 16})
+        for (const int jump : {42, 50, 60})
+            for (const int least : {5, 10})
                 for (const int unique : {2, 5})
                     all.push_back(
                         {fmt::format(

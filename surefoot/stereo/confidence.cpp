@@ -40,8 +40,8 @@ float outlier_probability(const MatchEvidence& evidence) noexcept {
                         kScoreShift * std::abs(evidence.shift_px) +
                         kScoreUnknown * evidence.unknown_share;
     const float probability = 1.0F / (1.0F + std::exp(-score));
-    return evidence.jump_distance_px <= kJumpZone_px
-               ? std::max(kJumpOutlierProbability, probability)
+    return evidence.nearer_by_px > kNearSideStep_px
+               ? std::max(kNearSideOutlierProbability, probability)
                : probability;
 }
 
@@ -49,6 +49,7 @@ void rate_matches(int v,
                   const RefinedRow& refined,
                   const Image<std::uint8_t>& jump_distance_px,
                   const UnknownCounts& unknown,
+                  const Image<float>& smallest_px,
                   DepthImage& depth) {
     rows::RateRow row;
     row.disparity_px = depth.disparity_px.row(v);
@@ -56,6 +57,7 @@ void rate_matches(int v,
     row.gradient_grey_px = refined.gradient_grey_px;
     row.shift_px = refined.shift_px;
     row.jump_distance_px = jump_distance_px.row(v);
+    row.smallest_px = smallest_px.row(v);
     row.unknown_count = unknown.pixels.row(v);
     row.unknown_radius_px = unknown.radius_px;
     row.unknown_rows = window_span(v, unknown.radius_px, depth.disparity_px.height());

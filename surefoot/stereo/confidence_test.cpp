@@ -37,12 +37,13 @@ TEST(MatchSigma, GrowsWithNoiseAndWithLessTexture) {
     EXPECT_GT(match_sigma_px(changed([](auto& e) { e.shift_px = -0.3F; })), match_sigma_px(kGood));
 }
 
-TEST(OutlierProbability, IsSmallForAGoodMatchAndHighNextToAJump) {
+TEST(OutlierProbability, IsSmallForAGoodMatchAndHighOnTheNearSideOfAJump) {
     EXPECT_LT(outlier_probability(kGood), 0.01F);
-    EXPECT_GE(outlier_probability(changed([](auto& e) { e.jump_distance_px = kJumpZone_px; })),
-              kJumpOutlierProbability);
-    EXPECT_LT(outlier_probability(changed([](auto& e) { e.jump_distance_px = kJumpZone_px + 1; })),
-              kJumpOutlierProbability);
+    EXPECT_GE(outlier_probability(changed([](auto& e) { e.nearer_by_px = 2.1F; })),
+              kNearSideOutlierProbability);
+    EXPECT_LT(outlier_probability(changed([](auto& e) { e.nearer_by_px = 2.0F; })), 0.01F);
+    EXPECT_LT(outlier_probability(changed([](auto& e) { e.jump_distance_px = 0; })), 0.1F)
+        << "the far side";
 }
 
 TEST(OutlierProbability, GrowsWithEveryWarning) {
@@ -67,6 +68,7 @@ TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
     std::vector<float> shift(kWidth);
     Image<std::uint8_t> jump_distance_px(kWidth, kHeight);
     UnknownCounts unknown{Image<std::uint8_t>(kWidth, kHeight), kRadius};
+    Image<float> smallest_px(kWidth, kHeight);
     for (int u = 0; u < kWidth; ++u) {
         const auto i = static_cast<std::size_t>(u);
         residual[i] = static_cast<float>(std::exp(rng.uniform(-3.0, 4.0)));
@@ -74,12 +76,17 @@ TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
         shift[i] = static_cast<float>(rng.uniform(-1.0, 1.0));
         jump_distance_px.at(u, 1) = static_cast<std::uint8_t>(u % 7 == 0 ? 255 : u % 16);
         unknown.pixels.at(u, 1) = static_cast<std::uint8_t>(rng.below(11));
+        smallest_px.at(u, 1) = 12.0F - static_cast<float>(u % 5);
     }
     std::vector<float> first;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(target);
-        rate_matches(
-            1, {residual.data(), gradient.data(), shift.data()}, jump_distance_px, unknown, depth);
+        rate_matches(1,
+                     {residual.data(), gradient.data(), shift.data()},
+                     jump_distance_px,
+                     unknown,
+                     smallest_px,
+                     depth);
         std::vector<float> all(depth.sigma_px.row(1), depth.sigma_px.row(1) + kWidth);
         all.insert(
             all.end(), depth.outlier_probability.row(1), depth.outlier_probability.row(1) + kWidth);
@@ -93,7 +100,8 @@ TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
                 gradient[i],
                 shift[i],
                 jump_distance_px.at(u, 1),
-                static_cast<float>(unknown.pixels.at(u, 1)) / static_cast<float>(area)};
+                static_cast<float>(unknown.pixels.at(u, 1)) / static_cast<float>(area),
+                static_cast<float>(u % 5)};
             ASSERT_NEAR(depth.sigma_px.at(u, 1), match_sigma_px(evidence), 1e-6F) << u;
             ASSERT_NEAR(depth.outlier_probability.at(u, 1), outlier_probability(evidence), 2e-6F)
                 << u;
@@ -110,7 +118,8 @@ TEST(RateMatches, UnknownHasNoSigmaAndIsNoInlier) {
     const float halves[2] = {0.5F, 0.5F};
     const Image<std::uint8_t> jump_distance_px(2, 1, 200);
     const UnknownCounts unknown{Image<std::uint8_t>(2, 1, 0), 4};
-    rate_matches(0, {halves, halves, halves}, jump_distance_px, unknown, depth);
+    const Image<float> smallest_px(2, 1, 12.0F);
+    rate_matches(0, {halves, halves, halves}, jump_distance_px, unknown, smallest_px, depth);
     EXPECT_GT(depth.sigma_px.at(0, 0), 0.0F);
     EXPECT_LT(depth.outlier_probability.at(0, 0), 0.1F);
     EXPECT_TRUE(std::isnan(depth.sigma_px.at(1, 0)));

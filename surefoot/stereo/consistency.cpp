@@ -127,6 +127,35 @@ void distance_to_marks(Executor& executor,
         rows::spread_across(distance_px.row(v + 1), width, distance_px.row(v));
 }
 
+void smallest_nearby(Executor& executor,
+                     const Image<float>& disparity_px,
+                     Image<float>& smallest_px) {
+    constexpr int kReach = rows::kNearby_px;
+    constexpr int kLines = 2 * kReach + 1;
+    const int width = disparity_px.width();
+    const int height = disparity_px.height();
+    smallest_px.resize(width, height);
+    for_row_blocks(executor, height, [&](int first, int last) {
+        const auto columns = static_cast<std::size_t>(width);
+        std::vector<float> scratch(columns + 2 * kReach);
+        std::vector<float> ring(kLines * columns);  // row v is in line v % kLines
+        const auto line = [&](int v) {
+            return ring.data() + static_cast<std::size_t>((v + kLines) % kLines) * columns;
+        };
+        const auto take_row = [&](int v) {
+            rows::smallest_along(
+                disparity_px.row(std::clamp(v, 0, height - 1)), width, scratch.data(), line(v));
+        };
+        for (int v = first - kReach; v < first + kReach; ++v) take_row(v);
+        for (int v = first; v < last; ++v) {
+            take_row(v + kReach);
+            const float* lines[kLines];
+            for (int k = 0; k < kLines; ++k) lines[k] = line(v + k - kReach);
+            rows::smallest_across(lines, width, smallest_px.row(v));
+        }
+    });
+}
+
 void count_unknown(Executor& executor,
                    const Image<float>& disparity_px,
                    int radius_px,

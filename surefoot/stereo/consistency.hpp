@@ -31,6 +31,13 @@ void distance_to_marks(Executor& executor,
                        const Image<std::uint8_t>& marks,
                        Image<std::uint8_t>& distance_px);
 
+/// Computes the smallest known disparity [px] in the window of 5 x 5 pixels around each pixel;
+/// infinity if all are unknown. A pixel with a much larger disparity lies on the near side of a
+/// jump.
+void smallest_nearby(Executor& executor,
+                     const Image<float>& disparity_px,
+                     Image<float>& smallest_px);
+
 /// Number of unknown pixels around each pixel.
 struct UnknownCounts {
     Image<std::uint8_t> pixels;  ///< counted in the window of `radius_px`, cut at the image border

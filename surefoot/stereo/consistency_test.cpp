@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -203,6 +205,34 @@ TEST(CountUnknown, CountsTheWindowInsideTheImage) {
             ASSERT_EQ(counts.pixels.at(u, v), unknown) << u << " " << v;
             ASSERT_EQ(window_span(u, kRadius, 37) * window_span(v, kRadius, 70), all);
         }
+    }
+}
+
+/// On every processor, the smallest known value of the 5 x 5 pixels that lie in the image.
+TEST(SmallestNearby, IsTheSmallestKnownValueOfTheWindow) {
+    Rng rng(8);
+    for (const auto& [width, height] : {std::pair{1, 1}, std::pair{3, 40}, std::pair{150, 70}}) {
+        Image<float> disparity_px(width, height);
+        for (std::size_t i = 0; i < disparity_px.size(); ++i)
+            disparity_px.data()[i] =
+                rng.uniform() < 0.6 ? kNanF : static_cast<float>(rng.uniform(1.0, 60.0));
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+            hwy::SetSupportedTargetsForTest(target);
+            Backwards backwards;
+            Image<float> smallest_px;
+            smallest_nearby(backwards, disparity_px, smallest_px);
+            for (int v = 0; v < height; ++v) {
+                for (int u = 0; u < width; ++u) {
+                    float expected_px = std::numeric_limits<float>::infinity();
+                    for (int y = std::max(0, v - 2); y <= std::min(height - 1, v + 2); ++y)
+                        for (int x = std::max(0, u - 2); x <= std::min(width - 1, u + 2); ++x)
+                            expected_px = std::fmin(expected_px, disparity_px.at(x, y));
+                    ASSERT_EQ(smallest_px.at(u, v), expected_px)
+                        << u << ", " << v << " on " << hwy::TargetName(target);
+                }
+            }
+        }
+        hwy::SetSupportedTargetsForTest(0);
     }
 }
 

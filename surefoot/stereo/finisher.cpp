@@ -22,6 +22,7 @@ void Finisher::finish(ImageView<const std::uint8_t> left,
                       DepthImage& depth) {
     mark_jumps(executor, found_px, kJump_px, jumps_);
     distance_to_marks(executor, jumps_, jump_distance_px_);
+    smallest_nearby(executor, found_px, smallest_px_);
     count_unknown(executor, found_px, kNeighbourhoodRadius_px, unknown_);
     refiner_.refine(left,
                     right,
@@ -31,7 +32,7 @@ void Finisher::finish(ImageView<const std::uint8_t> left,
                     executor,
                     depth.disparity_px,
                     [&](int v, const RefinedRow& refined) {
-                        rate_matches(v, refined, jump_distance_px_, unknown_, depth);
+                        rate_matches(v, refined, jump_distance_px_, unknown_, smallest_px_, depth);
                     });
 }
 

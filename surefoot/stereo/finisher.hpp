@@ -27,6 +27,7 @@ class Finisher {
     // These images stay between frames, so that a frame of the same size allocates nothing.
     Image<std::uint8_t> jumps_;
     Image<std::uint8_t> jump_distance_px_;
+    Image<float> smallest_px_;
     UnknownCounts unknown_;
 };
 

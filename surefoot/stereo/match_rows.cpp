@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "surefoot/core/unknown.hpp"
@@ -63,6 +64,32 @@ template <class D>
 HWY_INLINE hn::Vec<D> ordered(D d, const float* from) {
     const auto value = hn::LoadU(d, from);
     return hn::IfThenElse(hn::IsNaN(value), hn::Set(d, -1.0F), value);
+}
+
+void smallest_along_row(const float* disparity_px, int width, float* scratch, float* out) {
+    constexpr float kNone = std::numeric_limits<float>::infinity();
+    std::fill_n(scratch, kNearby_px, kNone);
+    std::fill_n(scratch + kNearby_px + width, kNearby_px, kNone);
+    for_columns(0, width, [&](auto d, int u) {
+        const auto value = hn::LoadU(d, disparity_px + u);
+        const auto ordered = hn::IfThenElse(hn::IsNaN(value), hn::Set(d, kNone), value);
+        hn::StoreU(ordered, d, scratch + kNearby_px + u);
+    });
+    for_columns(0, width, [&](auto d, int u) {
+        auto least = hn::LoadU(d, scratch + u);
+        for (int k = 1; k <= 2 * kNearby_px; ++k)
+            least = hn::Min(least, hn::LoadU(d, scratch + u + k));
+        hn::StoreU(least, d, out + u);
+    });
+}
+
+void smallest_across_rows(const float* const lines[2 * kNearby_px + 1], int width, float* out) {
+    for_columns(0, width, [&](auto d, int u) {
+        auto least = hn::LoadU(d, lines[0] + u);
+        for (int k = 1; k <= 2 * kNearby_px; ++k)
+            least = hn::Min(least, hn::LoadU(d, lines[k] + u));
+        hn::StoreU(least, d, out + u);
+    });
 }
 
 template <class V>
@@ -341,6 +368,8 @@ HWY_EXPORT(mark_ramps_row);
 HWY_EXPORT(mark_down_row);
 HWY_EXPORT(count_unknown_row);
 HWY_EXPORT(sum_windows_row);
+HWY_EXPORT(smallest_along_row);
+HWY_EXPORT(smallest_across_rows);
 HWY_EXPORT(spread_along_row);
 HWY_EXPORT(spread_across_row);
 
@@ -386,6 +415,12 @@ void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::
 }
 void sum_windows(const std::uint8_t* counts, int width, int radius, std::uint8_t* sums) {
     HWY_DYNAMIC_DISPATCH(sum_windows_row)(counts, width, radius, sums);
+}
+void smallest_along(const float* disparity_px, int width, float* scratch, float* out) {
+    HWY_DYNAMIC_DISPATCH(smallest_along_row)(disparity_px, width, scratch, out);
+}
+void smallest_across(const float* const lines[2 * kNearby_px + 1], int width, float* out) {
+    HWY_DYNAMIC_DISPATCH(smallest_across_rows)(lines, width, out);
 }
 void spread_along(const std::uint8_t* mark,
                   int width,

@@ -74,6 +74,14 @@ void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::
 /// Sums 2 radius + 1 counts; `counts` has `radius` more on either side. Each sum must fit a byte.
 void sum_windows(const std::uint8_t* counts, int width, int radius, std::uint8_t* sums);
 
+/// Number of rows and columns on either side whose smallest disparity smallest_nearby finds.
+inline constexpr int kNearby_px = 2;
+/// Writes the smallest known disparity of the 2 kNearby_px + 1 pixels around each pixel of the row;
+/// infinity if all are unknown. `scratch`: width + 2 kNearby_px floats.
+void smallest_along(const float* disparity_px, int width, float* scratch, float* out);
+/// Writes the smallest value of each column of `lines`.
+void smallest_across(const float* const lines[2 * kNearby_px + 1], int width, float* out);
+
 /// Largest distance that is counted; 255 means more.
 inline constexpr int kFarthest_px = 15;
 /// Computes the distance [px] to the nearest mark of a row. `scratch`: 2 (width + 2 kSpreadMargin).

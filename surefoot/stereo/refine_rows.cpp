@@ -394,15 +394,13 @@ HWY_INLINE void score_here(D d, const RateRow& row, const Divisor& area, int u) 
 /// Computes the outlier probability of the lanes from `u` on.
 template <class D>
 HWY_INLINE void weigh_here(D d, const RateRow& row, int u) {
-    const hn::RebindToSigned<D> d32;
-    const hn::Rebind<std::uint8_t, D> d8;
     const auto one = hn::Set(d, 1.0F);
     const auto score = hn::LoadU(d, row.outlier_probability + u);
     const auto chance = hn::Div(one, hn::Add(one, exp_of(d, hn::Neg(score))));
-    const auto jump_px = hn::PromoteTo(d32, hn::LoadU(d8, row.jump_distance_px + u));
-    const auto apart = hn::RebindMask(d, hn::Gt(jump_px, hn::Set(d32, kJumpZone_px)));
-    const auto least = hn::IfThenElse(apart, hn::Zero(d), hn::Set(d, kJumpOutlierProbability));
     const auto disparity = hn::LoadU(d, row.disparity_px + u);
+    const auto nearer_by_px = hn::Sub(disparity, hn::LoadU(d, row.smallest_px + u));
+    const auto least = hn::IfThenElseZero(hn::Gt(nearer_by_px, hn::Set(d, kNearSideStep_px)),
+                                          hn::Set(d, kNearSideOutlierProbability));
     const auto known = hn::Eq(disparity, disparity);
     hn::StoreU(hn::IfThenElse(known, hn::Max(chance, least), one), d, row.outlier_probability + u);
 }

@@ -86,6 +86,7 @@ struct RateRow {
     const float* gradient_grey_px = nullptr;
     const float* shift_px = nullptr;
     const std::uint8_t* jump_distance_px = nullptr;
+    const float* smallest_px = nullptr;           ///< see stereo::smallest_nearby
     const std::uint8_t* unknown_count = nullptr;  ///< see UnknownCounts
     int unknown_radius_px = 0;
     int unknown_rows = 0;  ///< number of rows of the windows inside the image
