@@ -21,7 +21,7 @@ using Match = std::function<Image<float>(const TruePair&)>;
 /// Returns the same matcher without the disparities whose outlier probability is above kTrusted.
 [[nodiscard]] Match trusted_chain();
 /// Largest outlier probability of a trusted match.
-inline constexpr float kTrusted = 0.25F;
+inline constexpr float kTrusted = 0.2F;
 /// Runs the matcher of the pipeline: disparities with sigma and outlier probability.
 [[nodiscard]] DepthImage chain_depth(const TruePair& pair);
 

@@ -22,8 +22,8 @@ void smooth_image_row(ImageView<const std::uint8_t> in,
                       int v,
                       std::vector<std::uint16_t>& scratch,
                       std::int16_t* out) {
-    const std::uint8_t* lines[5];
-    for (int k = 0; k < 5; ++k) lines[k] = in.row(std::clamp(v + k - 2, 0, in.height - 1));
+    const std::uint8_t* const lines[3] = {
+        in.row(std::max(v - 1, 0)), in.row(v), in.row(std::min(v + 1, in.height - 1))};
     rows::smooth_image(lines, in.width, scratch.data(), out);
 }
 
@@ -105,7 +105,7 @@ void SubpixelRefiner::warp_block(int first,
                                  const Image<std::uint8_t>& jump_distance_px,
                                  Image<float>& disparity_px) {
     const auto columns = static_cast<std::size_t>(left.width);
-    std::vector<std::uint16_t> sums(columns + 4);
+    std::vector<std::uint16_t> sums(columns + 2);
     std::vector<std::int16_t> smooth_left(columns);
     std::vector<std::int16_t> smooth_right(columns + 1);
     std::vector<std::int32_t> places(columns);

@@ -10,10 +10,10 @@
 namespace surefoot::stereo {
 
 struct RefineConfig {
-    int smooth_radius_px = 4;      ///< averages neighbours on the same surface over 9x9 pixels
+    int smooth_radius_px = 8;      ///< averages neighbours on the same surface over 17x17 pixels
     double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
     int window_radius_px = 12;     ///< 25x25 pixels share one correction; the radius is at most 16
-    double prior_sigma_px = 0.2;   ///< prior standard deviation of the smoothed disparity
+    double prior_sigma_px = 0.1;   ///< prior standard deviation of the smoothed disparity
     int jump_margin_px = 2;        ///< skips pixels this near to a jump: they show mixed surfaces
     double max_step_px = 1.0;      ///< largest correction
     /// Lower limit of the grey-level noise of a window (1 sigma, after smoothing of the image). The

@@ -33,27 +33,20 @@ constexpr float kMaxError = 512.0F;
 /// int32: 1089 * 1024^2 = 1.1e9.
 constexpr float kMaxGradient = 1024.0F;
 
-void smooth_image_row(const std::uint8_t* const in[5],
+void smooth_image_row(const std::uint8_t* const in[3],
                       int width,
                       std::uint16_t* HWY_RESTRICT scratch,
                       std::int16_t* HWY_RESTRICT out) {
-    std::uint16_t* HWY_RESTRICT sum = scratch + 2;
-    const std::uint8_t* const in0 = in[0];
-    const std::uint8_t* const in1 = in[1];
-    const std::uint8_t* const in2 = in[2];
-    const std::uint8_t* const in3 = in[3];
-    const std::uint8_t* const in4 = in[4];
-    for (int u = 0; u < width; ++u) {
-        sum[u] = static_cast<std::uint16_t>(in0[u] + in4[u] + 4 * (in1[u] + in3[u]) + 6 * in2[u]);
-    }
-    sum[-2] = sum[-1] = sum[0];
-    sum[width] = sum[width + 1] = sum[width - 1];
-    // The sum is at most 256 * 255 + 8, so it fits in 16 bits.
-    for (int u = 0; u < width; ++u) {
-        const auto total = static_cast<std::uint16_t>(
-            sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u] + 8);
-        out[u] = static_cast<std::int16_t>(total >> 4);
-    }
+    std::uint16_t* HWY_RESTRICT sum = scratch + 1;
+    const std::uint8_t* const above = in[0];
+    const std::uint8_t* const here = in[1];
+    const std::uint8_t* const below = in[2];
+    for (int u = 0; u < width; ++u)
+        sum[u] = static_cast<std::uint16_t>(above[u] + 2 * here[u] + below[u]);
+    sum[-1] = sum[0];
+    sum[width] = sum[width - 1];
+    for (int u = 0; u < width; ++u)
+        out[u] = static_cast<std::int16_t>(sum[u - 1] + 2 * sum[u] + sum[u + 1]);
 }
 
 /// Averages the lanes from `u` on with their neighbours in `steps` lines on either side.
@@ -438,7 +431,7 @@ HWY_EXPORT(slide_row);
 HWY_EXPORT(solve_row);
 HWY_EXPORT(rate_row);
 
-void smooth_image(const std::uint8_t* const in[5],
+void smooth_image(const std::uint8_t* const in[3],
                   int width,
                   std::uint16_t* scratch,
                   std::int16_t* out) {

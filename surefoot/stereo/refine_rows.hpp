@@ -9,9 +9,9 @@
 /// no float sum is re-ordered and no operation is contracted.
 namespace surefoot::stereo::rows {
 
-/// Applies the binomial filter 1 4 6 4 1 in both directions; the result is in 1/16 grey level.
-/// `in`: the five rows around the output row. `scratch`: width + 4 elements.
-void smooth_image(const std::uint8_t* const in[5],
+/// Applies the binomial filter 1 2 1 in both directions; the result is in 1/16 grey level.
+/// `in`: the three rows around the output row. `scratch`: width + 2 elements.
+void smooth_image(const std::uint8_t* const in[3],
                   int width,
                   std::uint16_t* scratch,
                   std::int16_t* out);

@@ -43,7 +43,7 @@ struct AnalyticStereoConfig {
 
     ShadowConfig shadow;
     double invented_share = 0.5;    ///< share of ramp and occluded pixels that are interpolated
-    double edge_suspicion = 0.3;    ///< outlier probability reported in seams and ramps
+    double edge_suspicion = 0.15;   ///< outlier probability reported in seams and ramps
     double plain_suspicion = 0.02;  ///< outlier probability reported elsewhere
 
     double max_disparity_px = 128.0;  ///< largest disparity of the search range
