@@ -2,7 +2,7 @@
 
 Only pixels that both cameras see are judged. If the truth of the right camera exists, both truths must agree within 1 px; else
 the pair's mask decides. Errors above 2 px are counted as in the benchmark of these pairs: pixels without a match take the
-smaller neighbour in their row. Trusted = outlier probability of at most one half; all trusted pixels count. The rounding of
+smaller neighbour in their row. Trusted = outlier probability of at most 0.2; all trusted pixels count. The rounding of
 the truth (uniform over a step) is added to sigma.
 """
 import dataclasses
@@ -10,7 +10,7 @@ import dataclasses
 import cv2
 import numpy as np
 
-TRUSTED = 0.5
+TRUSTED = 0.2
 SIGMA_LIMITS = ((63, 73), (90, 97), (97, 100))  # % of the trusted pixels within one, two, three sigma
 
 

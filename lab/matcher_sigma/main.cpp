@@ -70,7 +70,7 @@ void Confidences::add(const TruePair& pair) {
         const float p = depth.outlier_probability.data()[i];
         sigmas_px.push_back(depth.sigma_px.data()[i] + 4.0F * p);
         peak_doubts.push_back(doubt.data()[i]);
-        if (p > kTrusted || std::abs(error_px) > 1.0F) continue;
+        if (p > kTrustedOutlierProbability || std::abs(error_px) > 1.0F) continue;
         const double sigma_px = std::hypot(static_cast<double>(depth.sigma_px.data()[i]),
                                            pair.step_px / std::sqrt(12.0));
         ++trusted;

@@ -102,7 +102,8 @@ Result<Seen> see(const TruePair& pair) {
             const float error_px = evidence.disparity_px.at(u, v) - pair.truth_px.at(u, v);
             if (!(std::abs(error_px) <= 1.0F)) continue;
             const stereo::MatchEvidence match = evidence.at(u, v);
-            if (stereo::outlier_probability(match) > kTrusted || ++count % kTakenEvery != 0)
+            if (stereo::outlier_probability(match) > kTrustedOutlierProbability ||
+                ++count % kTakenEvery != 0)
                 continue;
             seen.samples.push_back({terms_of(match), static_cast<double>(error_px)});
             const double sigma_px = std::sqrt(variance_px2(seen.samples.back(), kNow));

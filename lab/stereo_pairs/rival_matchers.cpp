@@ -121,7 +121,7 @@ Match trusted_chain() {
     return [](const TruePair& pair) {
         DepthImage depth = chain_depth(pair);
         for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
-            if (depth.outlier_probability.data()[i] > kTrusted)
+            if (depth.outlier_probability.data()[i] > kTrustedOutlierProbability)
                 depth.disparity_px.data()[i] = kNanF;
         }
         return depth.disparity_px;

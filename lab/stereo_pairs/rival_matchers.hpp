@@ -18,10 +18,9 @@ using Match = std::function<Image<float>(const TruePair&)>;
 
 /// Returns the matcher of the pipeline with its default settings.
 [[nodiscard]] Match chain();
-/// Returns the same matcher without the disparities whose outlier probability is above kTrusted.
+/// Returns the same matcher without the disparities whose outlier probability is too high to
+/// be trusted.
 [[nodiscard]] Match trusted_chain();
-/// Largest outlier probability of a trusted match.
-inline constexpr float kTrusted = 0.2F;
 /// Runs the matcher of the pipeline: disparities with sigma and outlier probability.
 [[nodiscard]] DepthImage chain_depth(const TruePair& pair);
 

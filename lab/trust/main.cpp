@@ -273,7 +273,8 @@ void report(const std::string& folder, const std::vector<Seen>& all) {
     for (const Seen& seen : all) {
         double right = 0.0, kept = 0.0, wrong = 0.0, trusted = 0.0, wrong_trusted = 0.0;
         for (const Match& match : seen.matches) {
-            const bool trusts = stereo::outlier_probability(match.evidence) <= kTrusted;
+            const bool trusts =
+                stereo::outlier_probability(match.evidence) <= kTrustedOutlierProbability;
             right += match.error_px <= 1.0 ? 1.0 : 0.0;
             kept += match.error_px <= 1.0 && trusts ? 1.0 : 0.0;
             wrong += match.error_px > 2.0 ? 1.0 : 0.0;

@@ -20,10 +20,6 @@ struct MeasuredPair {
     stereo::PairCheck check;
 };
 
-/// Largest outlier probability of a trusted match. Other matches are drawn, but they do not become
-/// points and do not count in the figures.
-inline constexpr float kTrustedOutlierProbability = 0.5F;
-
 /// Rectifies the frame if a rig is given, and matches the images as the pipeline does. Returns an
 /// input error if the image sizes differ or do not fit the rig, if the images are not wider than
 /// the disparity range, or if the cameras are swapped.

@@ -106,7 +106,9 @@ std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pi
     std::vector<double> distances_m;
     for (std::size_t i = 0; i < points_m.size(); ++i) {
         const Eigen::Vector3f& p_camera_m = points_m.data()[i];
-        if (!p_camera_m.allFinite() || depth.outlier_probability.data()[i] > 0.5F) continue;
+        if (!p_camera_m.allFinite() ||
+            depth.outlier_probability.data()[i] > kTrustedOutlierProbability)
+            continue;
         const Eigen::Vector3d p_odom_m = T_odom_camera * p_camera_m.cast<double>();
         distances_m.push_back((p_odom_m - T_odom_body.translation_m).head<2>().norm());
     }

@@ -14,7 +14,6 @@ namespace surefoot::app {
 namespace {
 
 constexpr double kErrorBin_px = 0.01;
-constexpr float kOutlier = 0.5F;
 constexpr double kVisibleRange_m = 2.5;
 
 double median_of(const std::vector<std::int64_t>& histogram, std::int64_t total) {
@@ -135,7 +134,7 @@ void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline&
         const double disparity_px = static_cast<double>(depth.disparity_px.data()[i]);
         const double true_z_m = static_cast<double>(truth_m.data()[i]);
         if (!(disparity_px > 0.0) || !(true_z_m > 0.0)) continue;
-        if (depth.outlier_probability.data()[i] > kOutlier) {
+        if (depth.outlier_probability.data()[i] > kTrustedOutlierProbability) {
             ++outliers_;
             continue;
         }

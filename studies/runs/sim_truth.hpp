@@ -13,7 +13,7 @@
 
 namespace surefoot::app {
 
-/// Errors of the reported depth at the pixels with an outlier probability of at most 0.5.
+/// Errors of the reported depth at the trusted pixels (kTrustedOutlierProbability).
 struct DepthFigures {
     std::int64_t pixels = 0;
     double within_3_sigma = 0.0;  ///< share of pixels with |disparity error| <= 3 sigma
@@ -21,7 +21,7 @@ struct DepthFigures {
     double median_abs_error_px = 0.0;  ///< median |disparity error|
     double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m depth
     double sigma_at_2_m_m = 0.0;       ///< mean reported sigma_z at 1.9-2.1 m depth
-    double outlier_share = 0.0;        ///< share of pixels with an outlier probability above 0.5
+    double outlier_share = 0.0;        ///< share of pixels that are not trusted
 };
 
 /// Errors of a simulated run. No result is aligned with the truth before the comparison.

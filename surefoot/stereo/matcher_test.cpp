@@ -300,7 +300,6 @@ TEST_P(EveryMatcher, ThreeSigmaCoverTheErrors) {
 TEST_P(EveryMatcher, RightMatchesAreTrustedAndTrustedOnesAreRight) {
     const test::SyntheticPair& pair = scene();
     const DepthImage depth = match(pair.left, pair.right, config());
-    constexpr float kTrusted = 0.2F;  // the default of the map
     int right = 0, kept = 0, trusted = 0, trusted_wrong = 0;
     double expected_wrong = 0.0;
     for (int v = 0; v < pair.left.height(); ++v) {
@@ -312,7 +311,7 @@ TEST_P(EveryMatcher, RightMatchesAreTrustedAndTrustedOnesAreRight) {
             ASSERT_LE(probability, 1.0F);
             const bool bad = std::abs(error) > 1.0F;
             right += !bad;
-            if (probability > kTrusted) continue;
+            if (probability > kTrustedOutlierProbability) continue;
             kept += !bad;
             ++trusted;
             trusted_wrong += bad;

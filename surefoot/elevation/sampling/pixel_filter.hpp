@@ -11,7 +11,7 @@ namespace surefoot::elevation {
 
 /// Conditions under which a pixel of a depth image may give a height.
 struct PixelFilterConfig {
-    double max_outlier_probability = 0.2;
+    double max_outlier_probability = 0.2;  ///< kTrustedOutlierProbability
     bool surface_check = true;  ///< checks jumps and incidence; needs neighbours in the image
     int reach_px = 3;           ///< neighbours left, right, above and below at this distance
     double jump_px = 0.5;       ///< largest difference to the mean of two opposite neighbours
