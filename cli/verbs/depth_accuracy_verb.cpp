@@ -380,7 +380,7 @@ void add_depth_accuracy(VerbGroup verbs) {
         .needs(design);
     verb.option("--sigma",
                 o.sigma_px,
-                "with --design: standard deviation of a disparity, in px (default: 0.143, the "
+                "with --design: standard deviation of a disparity, in px (default: 0.138, the "
                 "lower limit of the matcher of Surefoot)")
         .value("PX")
         .needs(design);

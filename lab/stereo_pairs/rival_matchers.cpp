@@ -46,7 +46,7 @@ Image<float> opencv_disparities(cv::StereoMatcher& matcher, const TruePair& pair
 // border of the range.
 std::vector<Setting> settings_of_ours(Match (*match)(const OurSettings&)) {
     std::vector<Setting> all;
-    for (const int slope : {10, 13, 16})
+    for (const int slope : {9, 11, 14})
         for (const int jump : {42, 50, 60})
             for (const int least : {5, 10})
                 for (const int unique : {2, 5})

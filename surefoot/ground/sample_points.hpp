@@ -30,6 +30,6 @@ void sample_points(const camera::RectifiedRig& rig,
                    const DepthImage& depth,
                    int step_px,
                    FramePoints& seen,
-                   float max_outlier_probability = 0.2F);
+                   float max_outlier_probability = 0.1F);
 
 }  // namespace surefoot::ground

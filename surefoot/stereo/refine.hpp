@@ -10,7 +10,7 @@
 namespace surefoot::stereo {
 
 struct RefineConfig {
-    int smooth_radius_px = 8;      ///< averages neighbours on the same surface over 17x17 pixels
+    int smooth_radius_px = 4;      ///< averages neighbours on the same surface over 9x9 pixels
     double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
     int window_radius_px = 12;     ///< 25x25 pixels share one correction; the radius is at most 16
     double prior_sigma_px = 0.1;   ///< prior standard deviation of the smoothed disparity

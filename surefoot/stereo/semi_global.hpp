@@ -15,7 +15,7 @@ namespace surefoot::stereo {
 /// cones, cloth3 and simulated images with seeds 21-30 (docs/lab/matching.md).
 struct SemiGlobalConfig {
     int disparities = 64;       ///< searches 0 ... disparities - 1; at most 256
-    int slope_penalty = 13;     ///< P1: cost of a disparity change of 1 from pixel to pixel
+    int slope_penalty = 11;     ///< P1: cost of a disparity change of 1 from pixel to pixel
     int jump_penalty = 50;      ///< P2: cost of a larger disparity change where the image is flat
     int contrast_shift = 0;     ///< a grey step lowers P2 by |grey step| / 2^contrast_shift
     int min_jump_penalty = 10;  ///< lower limit of P2
