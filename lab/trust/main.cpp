@@ -73,7 +73,19 @@ Terms terms_of(const stereo::MatchEvidence& e) {
             static_cast<double>(e.unknown_share)};
 }
 
-Seen see(const TruePair& pair, std::string kind, bool fits) {
+/// True if these terms and the coefficients of the library give the library's probability.
+bool is_the_library(const stereo::MatchEvidence& evidence) {
+    if (evidence.nearer_by_px > stereo::kNearSideStep_px) return true;  // rated by a policy
+    const Terms c(static_cast<double>(stereo::kScoreConstant),
+                  static_cast<double>(stereo::kScoreNearJump),
+                  static_cast<double>(stereo::kScoreNoise),
+                  static_cast<double>(stereo::kScoreShift),
+                  static_cast<double>(stereo::kScoreUnknown));
+    const double p = 1.0 / (1.0 + std::exp(-c.dot(terms_of(evidence))));
+    return std::abs(p - static_cast<double>(stereo::outlier_probability(evidence))) < 1e-5;
+}
+
+Result<Seen> see(const TruePair& pair, std::string kind, bool fits) {
     const PairEvidence evidence(pair);
     Seen seen{pair.name, std::move(kind), fits, {}};
     int count = 0;
@@ -81,6 +93,9 @@ Seen see(const TruePair& pair, std::string kind, bool fits) {
         for (int u = 0; u < pair.truth_px.width(); ++u) {
             const float error_px = evidence.disparity_px.at(u, v) - pair.truth_px.at(u, v);
             if (std::isnan(error_px) || ++count % kTakenEvery != 0) continue;
+            if (!is_the_library(evidence.at(u, v)))
+                return input_error(
+                    "outlier_probability has changed; update terms_of in lab/trust/main.cpp");
             seen.matches.push_back({evidence.at(u, v), std::abs(static_cast<double>(error_px))});
         }
     }
@@ -154,7 +169,11 @@ class Album {
             return;
         }
         fmt::print(stderr, "{}\n", pair->name);
-        seen_.push_back(see(*pair, kind, fits));
+        auto seen = see(*pair, kind, fits);
+        if (seen)
+            seen_.push_back(std::move(*seen));
+        else if (status_)
+            status_ = seen.error();
     }
     [[nodiscard]] const Status& status() const { return status_; }
     [[nodiscard]] const std::vector<Seen>& seen() const { return seen_; }

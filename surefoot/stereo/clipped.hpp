@@ -15,10 +15,10 @@ inline constexpr std::uint8_t kClippedWhite = 254;
 /// Grey values up to this are at the dark end. They include the border without camera pixels.
 inline constexpr std::uint8_t kClippedBlack = 1;
 
-/// Removes disparities where the image has no detail: pixels whose whole 9 x 7 window (the census
-/// window) is clipped white or clipped black. A semi-global search carries a disparity from the
-/// border of such an area through all of it, and no residual reveals this error. The image border
-/// cuts the window. The filter allocates nothing while the image size stays the same.
+/// Removes disparities where the image has no detail: pixels whose whole 9 x 7 window is clipped
+/// white or clipped black (the census window is smaller). A semi-global search carries a disparity
+/// from the border of such an area through all of it, and no residual reveals this error. The image
+/// border cuts the window. The filter allocates nothing while the image size stays the same.
 class ClippedFilter {
   public:
     static constexpr int kReachX_px = 4;

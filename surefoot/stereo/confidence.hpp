@@ -14,7 +14,7 @@ struct MatchEvidence {
     float shift_px = 0.0F;          ///< see RefinedRow
     int jump_distance_px = 255;     ///< distance to the nearest disparity jump
     float unknown_share = 0.0F;     ///< share of unknown pixels in the 9x9 window, [0, 1]
-    /// Largest difference [px] to a neighbour farther away, in the window of 5 x 5 pixels.
+    /// Refined disparity minus the smallest found disparity of the 5 x 5 pixels around it [px].
     float nearer_by_px = 0.0F;
 };
 
@@ -41,7 +41,7 @@ inline constexpr float kMaxSigma_px = 1.5F;
 inline constexpr float kJumpReach_px = 12.0F;
 /// On the near side of a jump the nearer surface spreads (foreground fattening): 15 to 50 % of the
 /// pixels beside a jump of cones, cloth3 and simulated scenes are wrong there. By policy a pixel
-/// that is nearer than a neighbour by more than kNearSideStep_px is at best an even chance.
+/// that is nearer than a neighbour by more than kNearSideStep_px has at least this probability.
 inline constexpr float kNearSideStep_px = 2.0F;
 inline constexpr float kNearSideOutlierProbability = 0.5F;
 

@@ -39,9 +39,11 @@ TEST(MatchSigma, GrowsWithNoiseAndWithLessTexture) {
 
 TEST(OutlierProbability, IsSmallForAGoodMatchAndHighOnTheNearSideOfAJump) {
     EXPECT_LT(outlier_probability(kGood), 0.01F);
-    EXPECT_GE(outlier_probability(changed([](auto& e) { e.nearer_by_px = 2.1F; })),
-              kNearSideOutlierProbability);
-    EXPECT_LT(outlier_probability(changed([](auto& e) { e.nearer_by_px = 2.0F; })), 0.01F);
+    EXPECT_GE(
+        outlier_probability(changed([](auto& e) { e.nearer_by_px = kNearSideStep_px + 0.1F; })),
+        kNearSideOutlierProbability);
+    EXPECT_LT(outlier_probability(changed([](auto& e) { e.nearer_by_px = kNearSideStep_px; })),
+              0.01F);
     EXPECT_LT(outlier_probability(changed([](auto& e) { e.jump_distance_px = 0; })), 0.1F)
         << "the far side";
 }

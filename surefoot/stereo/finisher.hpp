@@ -24,7 +24,7 @@ class Finisher {
 
   private:
     SubpixelRefiner refiner_;
-    // These images stay between frames, so that a frame of the same size allocates nothing.
+    // These images stay between frames, so that a frame of the same size allocates no image.
     Image<std::uint8_t> jumps_;
     Image<std::uint8_t> jump_distance_px_;
     Image<float> smallest_px_;

@@ -72,8 +72,8 @@ void smallest_along_row(const float* disparity_px, int width, float* scratch, fl
     std::fill_n(scratch + kNearby_px + width, kNearby_px, kNone);
     for_columns(0, width, [&](auto d, int u) {
         const auto value = hn::LoadU(d, disparity_px + u);
-        const auto ordered = hn::IfThenElse(hn::IsNaN(value), hn::Set(d, kNone), value);
-        hn::StoreU(ordered, d, scratch + kNearby_px + u);
+        const auto known_or_none = hn::IfThenElse(hn::IsNaN(value), hn::Set(d, kNone), value);
+        hn::StoreU(known_or_none, d, scratch + kNearby_px + u);
     });
     for_columns(0, width, [&](auto d, int u) {
         auto least = hn::LoadU(d, scratch + u);

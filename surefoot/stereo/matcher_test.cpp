@@ -255,7 +255,7 @@ TEST_P(EveryMatcher, FloorIsExactToATenthOfAPixel) {
 }
 
 TEST(CensusMatcher, IsNotLateOnWeakFloor) {
-    // Its paths run down the image. Upright and upside down, the floor must have the same height.
+    // Paths come from all four sides. So upright and upside down the floor has the same height.
     double mean_px[2] = {};
     for (const bool upside_down : {false, true}) {
         double sum_px = 0.0;
@@ -288,7 +288,7 @@ TEST_P(EveryMatcher, ThreeSigmaCoverTheErrors) {
         depth.disparity_px, &depth.sigma_px, pair.disparity_px, [](int, int) { return true; });
     const Score trusted =
         score(depth.disparity_px, &depth.sigma_px, pair.disparity_px, [&](int u, int v) {
-            return depth.outlier_probability.at(u, v) < 0.5F;
+            return depth.outlier_probability.at(u, v) <= kTrustedOutlierProbability;
         });
     std::printf("3 sigma cover %.2f %% of all pixels, %.2f %% of the trusted\n",
                 100 * all.within_3_sigma,
@@ -356,7 +356,7 @@ struct RealPair {
     const char* mask;         ///< above 200 where both cameras see the point
     double truth_scale;
     int disparities;
-    double max_bad_2;     ///< measured value plus 10 %
+    double max_bad_2;     ///< of an earlier matcher, plus 10 %
     double max_bad_2_bm;  ///< limit for block matching, which is worse than SGBM
 };
 

@@ -46,8 +46,9 @@ struct SemiGlobalSearch::Workspace {
         if (left.width / 2 < kLeastLevelWidth_px) return nullptr;
         if (index == small.size()) small.emplace_back();
         SmallLevel& level = small[index];
-        executor.parallel_for(
-            2, [&](int side) { side == 0 ? halve(left, level.left) : halve(right, level.right); });
+        const ImageView<const std::uint8_t> from[] = {left, right};
+        GreyImage* const to[] = {&level.left, &level.right};
+        executor.parallel_for(2, [&](int side) { halve(from[side], *to[side]); });
         SemiGlobalConfig half = config;
         half.disparities = (disparities + 1) / 2;
         const LevelPrior* smaller = search_small(

@@ -23,15 +23,15 @@ struct SemiGlobalConfig {
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// A level is searched with the help of a level of half its size, as long as that is at least this
-/// wide [px].
+/// A level is searched with the help of a level of half its size if half its width, rounded down,
+/// is at least this [px].
 inline constexpr int kLeastLevelWidth_px = 200;
 /// Side [px] of the blocks that share one range of disparities.
 inline constexpr int kBlockSide_px = 64;
-/// A range begins and ends at a multiple of this number.
+/// A range begins at a multiple of this number. It ends at a multiple or at the last disparity.
 inline constexpr int kRangeStep = 8;
-/// A disparity of the smaller level is hopeless where its sum of costs lies this far above the
-/// least sum of the pixel.
+/// A disparity of the smaller level is hopeless where its sum of costs lies at least this far above
+/// the least sum of the pixel.
 inline constexpr int kHopeless = 20;
 /// Number of disparities by which a range extends beyond the hopeful disparities.
 inline constexpr int kRangeMargin = 2;
@@ -60,8 +60,9 @@ struct Winners {
 /// The search goes from coarse to fine. Each level has half the size of the next (means of 2 x 2
 /// pixels). The sums of a level enter the next level twice: as a prior, which is added to the
 /// matching costs (so weak texture is matched by what a larger area shows), and as a range of
-/// disparities for each block of kBlockSide_px. A range holds every disparity that is not hopeless
-/// at any pixel of the block, so no range depends on a decision of the smaller level.
+/// disparities for each block of kBlockSide_px. A range reaches from the smallest to the largest
+/// disparity that is hopeful at one pixel or more of the block in the smaller level, plus
+/// kRangeMargin. Disparities that the smaller level did not search are hopeless.
 ///
 /// This slow, plain version defines the result of the fast SemiGlobalSearch.
 void search_plainly(const SemiGlobalConfig& config,
@@ -74,7 +75,8 @@ void halve(ImageView<const std::uint8_t> in, GreyImage& out);
 
 /// Fast version of search_plainly, with the same bytes. The lanes hold 64 rows (for paths along
 /// rows) or 64 columns, so that no step needs a neighbouring lane. The cost volume covers only
-/// 64 x 64 pixels and stays in the cache. Run-time dispatch picks the widest instructions of the
+/// 64 x 64 pixels and stays in the cache; a smaller level also stores its priors, by rows and by
+/// columns. Run-time dispatch picks the widest instructions of the
 /// processor. Threads work on strips of rows. After the first pair of a size nothing is allocated.
 class SemiGlobalSearch {
   public:

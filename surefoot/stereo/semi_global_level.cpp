@@ -135,13 +135,13 @@ void LevelSearch::resize(int strips_at_once) {
         strip.left.resize(columns * kernels::kCensusRow);
         strip.right.resize((columns + front) * kernels::kCensusRow);
         strip.grey.resize(columns * kLanes);
-        strip.from_left.resize(blocks() + 1, config_.disparities);
+        strip.from_left.resize(blocks(), config_.disparities);
         strip.from_right.resize(1, config_.disparities);
         strip.sums.resize(static_cast<std::size_t>(2 * sums_size_));
         strip.prior_costs.resize(line);
         if (smaller_ == nullptr) std::memset(strip.prior_costs.data(), 0, line);
         if (prior_ == nullptr) continue;
-        strip.given_sums.resize(line);
+        strip.row_sums.resize(line);
         strip.nearest.resize(2 * line);
     }
     column_priors_.resize(static_cast<std::size_t>(blocks()) * line);
@@ -295,7 +295,7 @@ void LevelSearch::follow_rows(const Strip& s, int block) {
 
 /// Prefetches the data that one row of a block reads and writes. Rows lie too far apart for the
 /// processor to predict the next row.
-void LevelSearch::call_row(int u, int v) const {
+void LevelSearch::prefetch_row(int u, int v) const {
     hwy::Prefetch(left_.row(v) + u);
     if (winners_ == nullptr) return;
     const auto [disparity, cost, cost_below, cost_above, second_cost] = winners_at(*winners_, u, v);
@@ -327,7 +327,7 @@ void LevelSearch::follow_columns(const Strip& s, int block) {
     const std::ptrdiff_t half = static_cast<std::ptrdiff_t>(config_.disparities) * kLanes;
     if (prior_ != nullptr) std::memset(s.nearest.data(), 255, static_cast<std::size_t>(2 * half));
     for (int v = begin; v < end; ++v) {
-        call_row(u, std::min(v + 1, end - 1));
+        prefetch_row(u, std::min(v + 1, end - 1));
         const kernels::ColumnStep step = step_of(v, v - 1, above);
         if (winners_ != nullptr)
             find_winners(step, winners_at(*winners_, u, v), std::min(kLanes, width_ - u));
@@ -335,7 +335,7 @@ void LevelSearch::follow_columns(const Strip& s, int block) {
         kernels::PriorRow row;
         row.costs = prior_->row(block, s.index, v - begin) + kernels::cost_at(step.begin);
         row.nearest = s.nearest.data() + (v - begin >= kHalf ? half : 0);
-        row.sums = s.given_sums.data();
+        row.sums = s.row_sums.data();
         row.shift = kPriorShift;
         kernels::finish_prior_row(step, row);
     }

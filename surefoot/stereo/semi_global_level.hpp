@@ -15,12 +15,11 @@ struct DisparityRange {
     int end = 0;
 };
 
-/// What a level gives to the level of twice its size. Its blocks have 64 x 64 pixels of the giving
-/// level; each helps 2 x 2 blocks of the receiving level.
+/// Priors and hopeful disparities that a level passes to the level of twice its size. Its blocks
+/// have 64 x 64 pixels of the giving level; each helps 2 x 2 blocks of the receiving level.
 class LevelPrior {
   public:
     void resize(int width, int height, int disparities);
-    [[nodiscard]] int disparities() const { return disparities_; }
 
     /// Priors of the receiving level's block (x, y), line by line along rows or columns.
     [[nodiscard]] kernels::PriorBlock rows_of(int x, int y) const;
@@ -72,8 +71,8 @@ class LevelSearch {
         PathStates from_right;
         AlignedBytes sums;  ///< of one block, then matching costs; a free group before each part
         AlignedBytes prior_costs;
-        AlignedBytes given_sums;  ///< scratch of a row, if the level gives a prior
-        AlignedBytes nearest;     ///< see PriorRow, for the upper and the lower half of a block
+        AlignedBytes row_sums;  ///< scratch of a row, if the level gives a prior
+        AlignedBytes nearest;   ///< see PriorRow, for the upper and the lower half of a block
     };
     /// Largest number of strips that are processed at the same time, one per thread. The data of a
     /// strip stay in the cache until they are used.
@@ -95,7 +94,7 @@ class LevelSearch {
     void follow_strip(const Strip& s);
     [[nodiscard]] kernels::RowBlock row_block(const Strip& s, int block) const;
     [[nodiscard]] kernels::ColumnStep column_step(int block, int v, int v_before) const;
-    void call_row(int u, int v) const;
+    void prefetch_row(int u, int v) const;
 
     SemiGlobalConfig config_;
     kernels::Penalties penalties_;

@@ -136,7 +136,7 @@ class Level {
                                                     : Range{0, config.disparities});
     }
 
-    [[nodiscard]] const Volume& sums() {
+    [[nodiscard]] const Volume& sum_paths() {
         for (int v = 0; v < left_.height; ++v) {
             follow(0, v, 1, 0);
             follow(left_.width - 1, v, -1, 0);
@@ -185,7 +185,8 @@ class Level {
 Volume sums_of(const SemiGlobalConfig& config,
                ImageView<const std::uint8_t> left,
                ImageView<const std::uint8_t> right) {
-    if (left.width / 2 < kLeastLevelWidth_px) return Level(config, left, right, nullptr).sums();
+    if (left.width / 2 < kLeastLevelWidth_px)
+        return Level(config, left, right, nullptr).sum_paths();
     SemiGlobalConfig half = config;
     half.disparities = (config.disparities + 1) / 2;
     GreyImage half_left, half_right;
@@ -199,7 +200,7 @@ Volume sums_of(const SemiGlobalConfig& config,
             for (int& sum : sums) sum = sum == kOutside ? kNone : sum - least;
         }
     }
-    return Level(config, left, right, &coarse).sums();
+    return Level(config, left, right, &coarse).sum_paths();
 }
 
 void keep_winner(const std::vector<int>& sums, int u, int v, Winners& out) {
@@ -225,10 +226,14 @@ std::optional<std::string> SemiGlobalConfig::problem() const {
     if (disparities < 1 || disparities > 256)
         return fmt::format("semi-global search: {} disparities; the value must be from 1 to 256",
                            disparities);
-    if (slope_penalty < 0 || min_jump_penalty < 0 || contrast_shift < 0 || contrast_shift > 8)
-        return std::string(
-            "semi-global search: the penalties must be at least 0, and the contrast shift must be "
-            "from 0 to 8");
+    if (slope_penalty < 0 || slope_penalty > kNone || min_jump_penalty < 0 || contrast_shift < 0 ||
+        contrast_shift > 8)
+        return fmt::format(
+            "semi-global search: slope penalty {}, least jump penalty {}, contrast shift {}; they "
+            "must be from 0 to 255, at least 0, and from 0 to 8",
+            slope_penalty,
+            min_jump_penalty,
+            contrast_shift);
     constexpr int kMaxJump = 100;  // two path costs of kCensusBits + kMaxPrior + P2 fit into a byte
     static_assert(2 * (kCensusBits + kMaxPrior + kMaxJump) < kNone);
     if (jump_penalty < min_jump_penalty || jump_penalty > kMaxJump) {

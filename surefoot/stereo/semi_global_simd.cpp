@@ -182,7 +182,7 @@ void spread_prior_here(const PriorBlock& block, int line, int begin, int end, st
 
 /// Prefetch distance for memory that is written without being read before. Without the prefetch,
 /// every cache line would wait for memory.
-constexpr std::ptrdiff_t kCalledAhead = std::ptrdiff_t{2} * kCostGroup;
+constexpr std::ptrdiff_t kPrefetchAhead_bytes = std::ptrdiff_t{2} * kCostGroup;
 
 /// Returns the least path cost without the matching cost. The disparity stays, changes by one, or
 /// jumps. Additions saturate. The entry beyond the last disparity is 255.
@@ -216,8 +216,12 @@ HWY_INLINE void follow_column(const RowBlock& block,
     for (int first = block.begin; first < block.end; first += kGroup) {
         const int count = std::min(kGroup, block.end - first);
         const std::ptrdiff_t place = cost_at(first - block.begin) + u * kCostLine + lane;
-        std::uint8_t* const sums = block.sums + place;
-        std::uint8_t* const matches = block.match + place;
+        [[maybe_unused]] std::uint8_t* sums = nullptr;
+        [[maybe_unused]] std::uint8_t* matches = nullptr;
+        if constexpr (kSums != Sums::left_alone) {
+            sums = block.sums + place;
+            matches = block.match + place;
+        }
         for (std::ptrdiff_t at = 0; at < count * kLanes; at += kLanes) {
             const Bytes above = hn::Load(kBytes, state + kLanes);
             const Bytes match = kSums == Sums::added_to ? hn::Load(kBytes, matches + at)
@@ -227,9 +231,9 @@ HWY_INLINE void follow_column(const RowBlock& block,
                 hn::Add(hn::Sub(cheapest(below, here, above, slope, jump), least), match);
             hn::Store(cost, kBytes, state);
             if constexpr (kSums == Sums::written) {
-                hwy::Prefetch(sums + at + kCalledAhead);
+                hwy::Prefetch(sums + at + kPrefetchAhead_bytes);
                 hn::Store(cost, kBytes, sums + at);
-                hwy::Prefetch(matches + at + kCalledAhead);
+                hwy::Prefetch(matches + at + kPrefetchAhead_bytes);
                 hn::Store(match, kBytes, matches + at);
             }
             if constexpr (kSums == Sums::added_to)

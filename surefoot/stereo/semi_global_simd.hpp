@@ -72,9 +72,10 @@ struct RowBlock {
     /// Grey values of the previous column on the path; at the image edge, of its first column.
     const std::uint8_t* grey_before = nullptr;
     PriorBlock prior;
-    std::uint8_t* prior_costs = nullptr;  ///< scratch of (end - begin) * kLanes bytes
-    std::uint8_t* state = nullptr;        ///< costs of disparity 0 and above; updated
-    std::uint8_t* least = nullptr;        ///< least path cost, kLanes bytes; updated
+    /// (end - begin) * kLanes bytes: scratch, or zeros if there is no prior.
+    std::uint8_t* prior_costs = nullptr;
+    std::uint8_t* state = nullptr;  ///< costs of disparity 0 and above; updated
+    std::uint8_t* least = nullptr;  ///< least path cost, kLanes bytes; updated
     std::uint8_t* sums = nullptr;   ///< groups (kCostGroup) from disparity `begin` on, by column
     std::uint8_t* match = nullptr;  ///< matching costs, laid out like the sums
     int columns = 0;
@@ -108,7 +109,7 @@ struct WinnerRows {
 struct ColumnStep {
     const std::uint8_t* left[kCensusBytes] = {};
     const std::uint8_t* right[kCensusBytes] = {};  ///< pointers to the column of disparity 0
-    const std::uint8_t* prior_costs = nullptr;     ///< from spread_prior
+    const std::uint8_t* prior_costs = nullptr;     ///< from spread_prior, or zeros
     const std::uint8_t* grey = nullptr;
     const std::uint8_t* grey_before = nullptr;  ///< of the previous row on the path
     std::uint8_t* sums = nullptr;               ///< groups from disparity `begin` on
@@ -127,7 +128,7 @@ void follow_row(const ColumnStep& step);
 /// Runs the last path through the row and finds the winners.
 void finish_row(const ColumnStep& step, const WinnerRows& out);
 
-/// What a level gives to the level of twice its size, for one row of 64 columns.
+/// Priors that a level passes to the level of twice its size, for one row of 64 columns.
 struct PriorRow {
     std::uint8_t* costs = nullptr;    ///< disparity `begin`, in groups
     std::uint8_t* nearest = nullptr;  ///< least difference to the least sum, kLanes bytes per

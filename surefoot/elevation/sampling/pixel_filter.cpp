@@ -3,7 +3,12 @@
 
 #include <numbers>
 
+#include "surefoot/core/depth_image.hpp"
+
 namespace surefoot::elevation {
+
+static_assert(static_cast<float>(PixelFilterConfig{}.max_outlier_probability) ==
+              kTrustedOutlierProbability);
 
 void PixelFilterConfig::describe(ConfigVisitor& visitor) {
     visitor.number("max_outlier_probability",
