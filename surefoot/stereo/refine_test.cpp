@@ -379,8 +379,9 @@ struct WildPair {
           jump_distance_px(width, height) {
         float surface_px = 6.0F;
         for (std::size_t i = 0; i < left.size(); ++i) {
-            const double grey =
-                rng.uniform() < 0.05 ? 255.0 : 100.0 + 40.0 * std::sin(0.3 * static_cast<double>(i));
+            const double grey = rng.uniform() < 0.05
+                                    ? 255.0
+                                    : 100.0 + 40.0 * std::sin(0.3 * static_cast<double>(i));
             right.data()[i] =
                 static_cast<std::uint8_t>(std::clamp(grey + 5.0 * rng.normal(), 0.0, 255.0));
             left.data()[i] =

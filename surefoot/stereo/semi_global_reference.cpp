@@ -161,7 +161,8 @@ class Level {
   private:
     [[nodiscard]] Range range_at(int u, int v) const {
         const int blocks = (left_.width + kBlockSide_px - 1) / kBlockSide_px;
-        return ranges_[static_cast<std::size_t>(v / kBlockSide_px * blocks + u / kBlockSide_px)];
+        const int block = v / kBlockSide_px * blocks + u / kBlockSide_px;
+        return ranges_[static_cast<std::size_t>(block)];
     }
     /// Follows one path from the pixel (u, v) at the image border to the other border.
     void follow(int u, int v, int du, int dv) {
