@@ -4,20 +4,19 @@
 #include <algorithm>
 
 #include "lab/stereo_pairs/rival_matchers.hpp"
+#include "surefoot/stereo/finisher.hpp"
 #include "surefoot/stereo/refine.hpp"
 
 namespace surefoot::experiments {
 
 PairEvidence::PairEvidence(const TruePair& pair) {
-    constexpr double kJump_px = 1.0;
-    constexpr int kNeighbourhoodRadius_px = 4;
     const Image<float> found_px = selected_px({}, pair);
     Serial serial;
     Image<std::uint8_t> jumps;
-    stereo::mark_jumps(serial, found_px, kJump_px, jumps);
+    stereo::mark_jumps(serial, found_px, stereo::kJump_px, jumps);
     stereo::distance_to_marks(serial, jumps, jump_distance_px);
     stereo::smallest_nearby(serial, found_px, smallest_px);
-    stereo::count_unknown(serial, found_px, kNeighbourhoodRadius_px, unknown);
+    stereo::count_unknown(serial, found_px, stereo::kNeighbourhoodRadius_px, unknown);
     for (Image<float>* image : {&disparity_px, &residual_grey, &gradient_grey_px, &shift_px})
         image->resize(found_px.width(), found_px.height());
     const auto keep = [&](int v, const stereo::RefinedRow& row) {

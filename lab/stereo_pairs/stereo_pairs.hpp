@@ -33,6 +33,18 @@ struct TruePair {
 /// Every pixel on a surface has a truth. For glass and mirrors it is the disparity of the pane.
 [[nodiscard]] Result<TruePair> simulated_pair(const sim::SceneOptions& options);
 
+/// Scenes of the simulated images: steps, floors, rooms and objects.
+inline constexpr const char* kScenes[] = {"demo_stairs",
+                                          "sill_13",
+                                          "kerb_down_150",
+                                          "floor",
+                                          "stairs_up_ada",
+                                          "table",
+                                          "room",
+                                          "corridor",
+                                          "platform_edge",
+                                          "ramp_1_12_up"};
+
 /// Sets the truth of pixels that the right camera does not see to NaN. These pixels are outside the
 /// right image, or a surface farther right occludes them.
 void forget_hidden(TruePair& pair);

@@ -36,6 +36,7 @@
 #include "surefoot/core/unknown.hpp"
 #include "surefoot/io/calibration/rig_file.hpp"
 #include "surefoot/io/images/image_file.hpp"
+#include "surefoot/io/recordings/recording.hpp"
 
 namespace surefoot::experiments {
 namespace {
@@ -141,13 +142,7 @@ Result<TruePair> side_by_side(const std::string& name,
     const auto both = io::read_grey_image(path);
     if (!both) return both.error();
     StereoFrame frame;
-    const int width = both->width() / 2;
-    frame.left = GreyImage(width, both->height());
-    frame.right = GreyImage(width, both->height());
-    for (int v = 0; v < both->height(); ++v) {
-        std::copy_n(both->row(v), width, frame.left.row(v));
-        std::copy_n(both->row(v) + width, width, frame.right.row(v));
-    }
+    if (auto split = io::split_side_by_side(*both, rig, path, frame); !split) return split.error();
     const auto rectifier = camera::Rectifier::make(rig);
     if (!rectifier) return rectifier.error();
     camera::RectifiedPair rectified;
@@ -189,16 +184,7 @@ void add_simulated(Album& album, std::uint64_t seed, bool fits) {
     options.seed = seed;
     for (const double noise : {1.0, 2.0}) {
         options.noise = noise;
-        for (const char* scene : {"demo_stairs",
-                                  "sill_13",
-                                  "kerb_down_150",
-                                  "floor",
-                                  "stairs_up_ada",
-                                  "table",
-                                  "room",
-                                  "corridor",
-                                  "platform_edge",
-                                  "ramp_1_12_up"}) {
+        for (const char* scene : kScenes) {
             options.scene = scene;
             auto pair = simulated_pair(options);
             if (pair) forget_hidden(*pair);

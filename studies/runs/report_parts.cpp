@@ -149,6 +149,7 @@ Json frame_json(const FrameReport& frame) {
             {"inliers", frame.motion.inliers},
             {"residual_px", number(frame.motion.residual_px)},
             {"depth_pixels", frame.depth_pixels},
+            {"fine_pixels", frame.fine_pixels},
             {"known_cells", frame.known_cells},
             {"ground_accepted", frame.ground.accepted},
             {"camera", to_string(frame.camera)},

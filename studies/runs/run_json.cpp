@@ -121,6 +121,13 @@ Json error_json(const RunRecord& record, const Status& written) {
     return written ? Json(nullptr) : Json(written.error().message);
 }
 
+Json fine_json(const RunRecord& record, const pipeline::Pipeline& pipeline) {
+    const auto frames = std::count_if(record.frames.begin(),
+                                      record.frames.end(),
+                                      [](const FrameReport& f) { return f.fine_pixels > 0; });
+    return {{"scale", pipeline.scale()}, {"frames", frames}};
+}
+
 Json run_object(const RunRecord& record,
                 const pipeline::Pipeline& pipeline,
                 const Status& written) {
@@ -141,6 +148,7 @@ Json run_object(const RunRecord& record,
                    {"counts", counts_json(record.fusion)},
                    {"frame_status", frame_status_json(record.frame_status)},
                    {"camera", camera_json(pipeline.rig())},
+                   {"fine", fine_json(record, pipeline)},
                    {"map",
                     {{"known_cells", pipeline.map().known_cells()},
                      {"cells", geometry.nx * geometry.ny},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/camera/rectifier.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -31,7 +32,22 @@ RemapTable make_table(const RectifiedRig& rig, const RectifiedCamera& this_camer
     return table;
 }
 
+void copy_part(const GreyImage& image, const PixelBox& box, GreyImage& out) {
+    out.resize(box.width, box.height);
+    for (int v = 0; v < box.height; ++v)
+        std::copy_n(image.row(box.v + v) + box.u, box.width, out.row(v));
+}
+
 }  // namespace
+
+RectifiedRig part_of(const RectifiedRig& rig, const PixelBox& box) {
+    RectifiedRig part = rig;
+    part.width = box.width;
+    part.height = box.height;
+    part.cx_px -= box.u;
+    part.cy_px -= box.v;
+    return part;
+}
 
 struct Rectifier::Impl {
     Rectification plan;
@@ -39,6 +55,12 @@ struct Rectifier::Impl {
     RemapTable right;
     double readout_s = 0.0;
 
+    [[nodiscard]] bool has_size_of(const StereoFrame& frame) const {
+        const Camera& raw = plan.left.camera;
+        return frame.left.width() == raw.width && frame.left.height() == raw.height &&
+               (!plan.right ||
+                (frame.right.width() == raw.width && frame.right.height() == raw.height));
+    }
     [[nodiscard]] const RectifiedCamera& camera(Side side) const {
         SUREFOOT_ASSERT(side == Side::left || plan.right.has_value());
         return side == Side::left ? plan.left : *plan.right;
@@ -80,11 +102,8 @@ double Rectifier::row_offset_s(double v_raw_px) const noexcept {
 }
 
 void Rectifier::rectify(const StereoFrame& frame, RectifiedPair& out) const {
-    const Camera& raw = impl_->plan.left.camera;
     const bool stereo = impl_->plan.right.has_value();
-    SUREFOOT_ASSERT(frame.left.width() == raw.width && frame.left.height() == raw.height);
-    SUREFOOT_ASSERT(!stereo ||
-                    (frame.right.width() == raw.width && frame.right.height() == raw.height));
+    SUREFOOT_ASSERT(impl_->has_size_of(frame));
     if (!stereo) out.right = GreyImage();
     if (impl_->plan.identity) {
         out.left = frame.left;
@@ -93,6 +112,25 @@ void Rectifier::rectify(const StereoFrame& frame, RectifiedPair& out) const {
     }
     impl_->left.remap(frame.left.view(), out.left);
     if (stereo) impl_->right.remap(frame.right.view(), out.right);
+}
+
+void Rectifier::rectify_part(const StereoFrame& frame,
+                             const PixelBox& box,
+                             RectifiedPair& out) const {
+    const RectifiedRig& rig = impl_->plan.rig;
+    SUREFOOT_ASSERT(impl_->has_size_of(frame));
+    SUREFOOT_ASSERT(box.u >= 0 && box.v >= 0 && box.width >= 0 && box.height >= 0 &&
+                    box.u + box.width <= rig.width && box.v + box.height <= rig.height);
+    const auto part = [&](const GreyImage& raw, const RemapTable& table, GreyImage& to) {
+        if (impl_->plan.identity) return copy_part(raw, box, to);
+        table.remap_part(raw.view(), box.u, box.v, box.width, box.height, to);
+    };
+    part(frame.left, impl_->left, out.left);
+    if (impl_->plan.right) {
+        part(frame.right, impl_->right, out.right);
+    } else {
+        out.right = GreyImage();
+    }
 }
 
 void Rectifier::rectify_depth(const Image<float>& raw_depth_m, Image<float>& out) const {

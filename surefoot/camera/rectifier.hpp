@@ -18,6 +18,18 @@ struct RectifiedPair {
     GreyImage right;
 };
 
+/// A rectangle of pixels of an image. (u, v): its upper left pixel.
+struct PixelBox {
+    int u = 0;
+    int v = 0;
+    int width = 0;
+    int height = 0;
+    friend bool operator==(const PixelBox&, const PixelBox&) = default;
+};
+
+/// Returns the rig of a part of its rectified images.
+[[nodiscard]] RectifiedRig part_of(const RectifiedRig& rig, const PixelBox& box);
+
 /// Maps raw images and raw points of a rig to those of its RectifiedRig. Works for every mix of
 /// lens models: it computes the half rotations itself, because cv::fisheye::stereoRectify fails on
 /// real rigs. Thread-compatible: const calls may run at the same time.
@@ -43,6 +55,8 @@ class Rectifier {
     /// Images must have the size of the rig; the source checks that. Pixels without a source
     /// become 0.
     void rectify(const StereoFrame& frame, RectifiedPair& out) const;
+    /// As `rectify`, but only a part of the rectified images. `box` must lie in the image.
+    void rectify_part(const StereoFrame& frame, const PixelBox& box, RectifiedPair& out) const;
     /// Computes the depth along z [m] of every rectified pixel of an RGB-D frame, from the nearest
     /// raw pixel; NaN = unknown depth.
     void rectify_depth(const Image<float>& raw_depth_m, Image<float>& out) const;

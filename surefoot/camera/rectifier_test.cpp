@@ -150,6 +150,44 @@ TEST_P(EveryRig, AWarpedPlaneMatchesItselfAtItsDisparity) {
     EXPECT_GT(sum_wrong_row / count, 4.0 * error_grey);
 }
 
+TEST_P(EveryRig, APartHasTheBytesOfTheWhole) {
+    StereoRig rectified = test::ideal_rig(64, 48, 50.0);
+    rectified.rectified = true;
+    for (const StereoRig& rig : {rig_, rectified}) {
+        const Rectifier rectifier = make(rig);
+        StereoFrame frame;
+        frame.left = GreyImage(rig.left.width, rig.left.height);
+        for (std::size_t i = 0; i < frame.left.size(); ++i)
+            frame.left.data()[i] = static_cast<std::uint8_t>(i * 31 % 251);
+        frame.right = frame.left;
+        std::reverse(frame.right.data(), frame.right.data() + frame.right.size());
+        RectifiedPair whole;
+        rectifier.rectify(frame, whole);
+        const int width = rectifier.rig().width;
+        const int height = rectifier.rig().height;
+        for (const PixelBox& box : {PixelBox{0, 0, width, height},
+                                    PixelBox{7, 11, 33, 29},
+                                    PixelBox{width - 5, height - 1, 5, 1},
+                                    PixelBox{3, 3, 0, 0}}) {
+            RectifiedPair part;
+            rectifier.rectify_part(frame, box, part);
+            ASSERT_EQ(part.left.width(), box.width);
+            ASSERT_EQ(part.right.height(), box.height);
+            for (int v = 0; v < box.height; ++v) {
+                for (int u = 0; u < box.width; ++u) {
+                    ASSERT_EQ(part.left.at(u, v), whole.left.at(box.u + u, box.v + v));
+                    ASSERT_EQ(part.right.at(u, v), whole.right.at(box.u + u, box.v + v));
+                }
+            }
+            const RectifiedRig of_part = part_of(rectifier.rig(), box);
+            EXPECT_LT((of_part.point(1.0, 2.0, 3.0) -
+                       rectifier.rig().point(box.u + 1.0, box.v + 2.0, 3.0))
+                          .norm(),
+                      1e-12);
+        }
+    }
+}
+
 TEST(Rectifier, RectifiedRigsPassThrough) {
     const StereoRig rig = test::zed_rig();
     const Rectifier rectifier = make(rig);

@@ -54,6 +54,28 @@ void RemapTable::remap(ImageView<const std::uint8_t> source, GreyImage& out) con
     remap_pixels(view(), source.data, source.stride, out.data(), out.size());
 }
 
+void RemapTable::remap_part(ImageView<const std::uint8_t> source,
+                            int u,
+                            int v,
+                            int width,
+                            int height,
+                            GreyImage& out) const {
+    SUREFOOT_ASSERT(source.width == source_width_ && source.height == source_height_ &&
+                    source.stride == source_width_);
+    SUREFOOT_ASSERT(u >= 0 && v >= 0 && width >= 0 && height >= 0 && u + width <= width_ &&
+                    v + height <= height_);
+    out.resize(width, height);
+    const View whole = view();
+    for (int row = 0; row < height; ++row) {
+        const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(v + row) * width_ + u;
+        remap_pixels({whole.offset + first, whole.fraction_x + first, whole.fraction_y + first},
+                     source.data,
+                     source.stride,
+                     out.row(row),
+                     static_cast<std::size_t>(width));
+    }
+}
+
 void RemapTable::remap_reference(ImageView<const std::uint8_t> source, GreyImage& out) const {
     SUREFOOT_ASSERT(source.width == source_width_ && source.height == source_height_ &&
                     source.stride == source_width_);

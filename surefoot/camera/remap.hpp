@@ -32,6 +32,14 @@ class RemapTable {
     /// `source` must have the size given to the constructor. `out` gets the size of the table.
     /// Pixels without a source become 0.
     void remap(ImageView<const std::uint8_t> source, GreyImage& out) const;
+    /// As `remap`, but only the `width` x `height` pixels from (u, v) on, which must lie in the
+    /// table.
+    void remap_part(ImageView<const std::uint8_t> source,
+                    int u,
+                    int v,
+                    int width,
+                    int height,
+                    GreyImage& out) const;
     /// Remaps pixel by pixel in plain code. Defines the result; tests compare `remap` with it.
     void remap_reference(ImageView<const std::uint8_t> source, GreyImage& out) const;
 

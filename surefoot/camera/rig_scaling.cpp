@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "surefoot/core/assert.hpp"
+
 namespace surefoot::camera {
 namespace {
 
@@ -12,8 +14,7 @@ bool same_shape(const Camera& camera, int width, int height) noexcept {
     return std::int64_t{camera.width} * height == std::int64_t{camera.height} * width;
 }
 
-Camera scaled(Camera camera, int width, int height) {
-    const double s = static_cast<double>(width) / camera.width;
+Camera scaled(Camera camera, double s, int width, int height) {
     std::visit(
         [s](auto& m) {
             m.fx_px *= s;
@@ -44,8 +45,9 @@ Result<StereoRig> scaled_to(const StereoRig& rig, int width, int height) {
             static_cast<double>(height) / rig.left.height));
     }
     StereoRig out = rig;
-    out.left = scaled(rig.left, width, height);
-    if (rig.right) out.right = scaled(*rig.right, width, height);
+    const double s = static_cast<double>(width) / rig.left.width;
+    out.left = scaled(rig.left, s, width, height);
+    if (rig.right) out.right = scaled(*rig.right, s, width, height);
     if (const auto problem = out.problem()) {
         return input_error(
             fmt::format("the calibration is not valid after scaling to {} x {} px: {}",
@@ -54,6 +56,35 @@ Result<StereoRig> scaled_to(const StereoRig& rig, int width, int height) {
                         *problem));
     }
     return out;
+}
+
+StereoRig shrunk(const StereoRig& rig, int factor) {
+    SUREFOOT_ASSERT(factor >= 1);
+    StereoRig out = rig;
+    const int width = rig.left.width / factor;
+    const int height = rig.left.height / factor;
+    out.left = scaled(rig.left, 1.0 / factor, width, height);
+    if (rig.right) out.right = scaled(*rig.right, 1.0 / factor, width, height);
+    return out;
+}
+
+void shrink(ImageView<const std::uint8_t> in, int factor, GreyImage& out) {
+    SUREFOOT_ASSERT(factor >= 1 && factor <= in.width && factor <= in.height);
+    const int width = in.width / factor;
+    const int height = in.height / factor;
+    const auto area = static_cast<std::uint32_t>(factor * factor);
+    out.resize(width, height);
+    for (int v = 0; v < height; ++v) {
+        std::uint8_t* const to = out.row(v);
+        for (int u = 0; u < width; ++u) {
+            std::uint32_t sum = area / 2;
+            for (int y = 0; y < factor; ++y) {
+                const std::uint8_t* const from = in.row(v * factor + y) + u * factor;
+                for (int x = 0; x < factor; ++x) sum += from[x];
+            }
+            to[u] = static_cast<std::uint8_t>(sum / area);
+        }
+    }
 }
 
 bool is_binning(const Camera& camera, int width, int height) noexcept {

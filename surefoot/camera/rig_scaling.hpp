@@ -3,6 +3,7 @@
 
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/core/views.hpp"
 
 namespace surefoot::camera {
 
@@ -14,6 +15,13 @@ namespace surefoot::camera {
 /// Sizes alone cannot distinguish a resized image from a crop of the same shape (a ZED's 1080p is a
 /// crop of its 2K). The caller must make sure that the image is resized.
 [[nodiscard]] Result<StereoRig> scaled_to(const StereoRig& rig, int width, int height);
+
+/// Returns the rig of images that `shrink` made smaller by `factor` >= 1. Columns and rows beyond
+/// the last whole square of factor x factor pixels are cut off. `rig` must have no problem().
+[[nodiscard]] StereoRig shrunk(const StereoRig& rig, int factor);
+
+/// Means of factor x factor pixels, rounded. `factor` must be at least 1 and at most both sides.
+void shrink(ImageView<const std::uint8_t> in, int factor, GreyImage& out);
 
 /// True if one size is the same integer multiple of the other on both sides, as with binning.
 [[nodiscard]] bool is_binning(const Camera& camera, int width, int height) noexcept;

@@ -56,6 +56,45 @@ TEST(RigScaling, EveryPointMovesAsTheImageIsResized) {
     }
 }
 
+/// A size that is no multiple loses the last columns and rows, and the first pixel stays the first.
+TEST(RigScaling, ShrinkingKeepsEveryPointInPlace) {
+    for (const int factor : {1, 2, 3, 5}) {
+        const StereoRig rig = test::euroc_rig();  // 752 x 480
+        const StereoRig small = shrunk(rig, factor);
+        EXPECT_EQ(small.left.width, 752 / factor);
+        EXPECT_EQ(small.right->height, 480 / factor);
+        EXPECT_FALSE(small.problem());
+        for (double x = -0.6; x < 0.7; x += 0.15) {
+            const Eigen::Vector3d p(x, 0.3 * x - 0.1, 1.0);
+            const auto before = project(rig.left.model, p);
+            const auto after = project(small.left.model, p);
+            ASSERT_TRUE(before && after);
+            EXPECT_LT((*after - moved(*before, 1.0 / factor)).norm(), kRounding_px) << factor;
+        }
+    }
+}
+
+TEST(RigScaling, ShrunkPixelsAreMeansOfSquares) {
+    GreyImage image(11, 8);
+    for (std::size_t i = 0; i < image.size(); ++i)
+        image.data()[i] = static_cast<std::uint8_t>(i * 37 % 256);
+    for (const int factor : {1, 2, 3, 4, 8}) {
+        GreyImage small;
+        shrink(image.view(), factor, small);
+        ASSERT_EQ(small.width(), 11 / factor);
+        ASSERT_EQ(small.height(), 8 / factor);
+        for (int v = 0; v < small.height(); ++v) {
+            for (int u = 0; u < small.width(); ++u) {
+                double sum = 0.0;
+                for (int y = 0; y < factor; ++y)
+                    for (int x = 0; x < factor; ++x)
+                        sum += image.at(u * factor + x, v * factor + y);
+                EXPECT_NEAR(small.at(u, v), sum / (factor * factor), 0.5) << factor;
+            }
+        }
+    }
+}
+
 TEST(RigScaling, TheMiddleOfTheImageStaysTheMiddle) {
     StereoRig rig = test::zed_rig();
     for (Camera* camera : {&rig.left, &*rig.right}) {

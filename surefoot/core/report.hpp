@@ -66,6 +66,8 @@ struct FrameReport {
     MotionEstimate motion;
     std::int64_t depth_pixels = 0;  ///< pixels with a disparity
     std::int64_t image_pixels = 0;
+    /// Pixels of the fine region with a disparity; 0 if the frame was not matched at full size.
+    std::int64_t fine_pixels = 0;
     GroundObservation ground;  ///< ground plane in the body frame
     FusionCounts fusion;
     std::int64_t known_cells = 0;  ///< known map cells after this frame

@@ -22,6 +22,13 @@ constexpr int kOverheadMost = 8;
 /// observation.
 constexpr float kNewObservation = 0.25F;
 constexpr float kFirstObservation = 0.5F;
+/// Added to the id of a viewpoint if the cell was observed finely from there.
+constexpr ViewpointHistory::Id kFineView = ViewpointHistory::Id{1} << 31;
+
+ViewpointHistory::Id observed_from(const CellObservation& seen, const FrameObservation& look) {
+    return seen.is_fine ? look.view | kFineView : look.view;
+}
+
 /// Evidence that one contradicting frame adds against a surface that every observation showed.
 constexpr int kGone = 16;
 
@@ -295,7 +302,7 @@ void ElevationCells::start(std::size_t cell,
     layers_.free_above_m.data()[cell] = kNanF;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     align(cell);
-    viewpoint_.data()[cell] = look.view;
+    viewpoint_.data()[cell] = observed_from(seen, look);
     bottom_m_.data()[cell] = seen.bottom_m;
     seen_through_.data()[cell] = 0;
     // A known overhead object stays if it is more than min_overhead_m above the new surface.
@@ -308,11 +315,11 @@ void ElevationCells::agree(std::size_t cell,
                            const CellObservation& seen,
                            const FrameObservation& look) {
     const CellMeasurement& measured = seen.measured;
-    if (look.views.is_new_since(viewpoint_.data()[cell])) {
+    if (is_news(cell, seen, look)) {
         layers_.height_m.data()[cell] = static_cast<float>(fused.z_m);
         layers_.height_var_m2.data()[cell] = static_cast<float>(fused.var_m2);
         settled_var_m2_.data()[cell] = static_cast<float>(fused.var_m2);
-        viewpoint_.data()[cell] = look.view;
+        viewpoint_.data()[cell] = observed_from(seen, look);
     } else {
         repeat(cell, measured, look);
     }
@@ -352,6 +359,14 @@ void ElevationCells::remember_density(std::size_t cell, float ratio) {
         std::isnan(remembered) ? ratio : remembered + kNewObservation * (ratio - remembered);
 }
 
+bool ElevationCells::is_news(std::size_t cell,
+                             const CellObservation& seen,
+                             const FrameObservation& look) const {
+    const ViewpointHistory::Id viewpoint = viewpoint_.data()[cell];
+    return look.views.is_new_since(viewpoint & ~kFineView) ||
+           (seen.is_fine && (viewpoint & kFineView) == 0);
+}
+
 void ElevationCells::repeat(std::size_t cell,
                             const CellMeasurement& measured,
                             const FrameObservation& look) {
@@ -364,7 +379,8 @@ void ElevationCells::repeat(std::size_t cell,
     layers_.height_m.data()[cell] = measured.z_m;
     var_m2 = measured_m2;
     settled_m2 = measured_m2;
-    viewpoint_.data()[cell] = look.view;
+    ViewpointHistory::Id& viewpoint = viewpoint_.data()[cell];
+    viewpoint = look.view | (viewpoint & kFineView);
 }
 
 }  // namespace surefoot::elevation

@@ -28,6 +28,9 @@ struct CellObservation {
     /// Lower end of the observed surface. A face seen from the side reaches down to its lowest
     /// points; every other surface begins at its height.
     float bottom_m = 0.0F;
+    /// True if the cell was matched in a larger image than the others of the frame. The errors of
+    /// such a match are new information, even from a viewpoint of coarse matches. ASSUMPTION.
+    bool is_fine = false;
 };
 
 /// The cells of an elevation map, and their update by observations. Cells are independent: threads
@@ -106,6 +109,9 @@ class ElevationCells {
                const CellObservation& seen,
                const FrameObservation& look);
     void repeat(std::size_t cell, const CellMeasurement& measured, const FrameObservation& look);
+    [[nodiscard]] bool is_news(std::size_t cell,
+                               const CellObservation& seen,
+                               const FrameObservation& look) const;
     void set_confidence(std::size_t cell, float confidence);
     void remember_density(std::size_t cell, float ratio);
     /// Returns the trust that the present height gets when it becomes an overhead object.
@@ -129,7 +135,8 @@ class ElevationCells {
     grid::SlidingLayer<std::uint32_t> aligned_step_;
     grid::SlidingLayer<std::uint8_t> is_asked_;
     std::uint32_t motions_ = 0;
-    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< last viewpoint with new information
+    /// Last viewpoint with new information; elevation_cells.cpp marks fine observations.
+    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;
     /// Lowest surface observed above the height, and the trust in it.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;

@@ -27,6 +27,14 @@ Eigen::Vector2d ahead_of(const Pose& T_odom_body) {
     return length > 1e-3 ? Eigen::Vector2d(ahead / length) : Eigen::Vector2d::UnitX();
 }
 
+bool has_equal_sizes(const DepthImage& depth) {
+    const Image<float>& disparity_px = depth.disparity_px;
+    return depth.sigma_px.width() == disparity_px.width() &&
+           depth.sigma_px.height() == disparity_px.height() &&
+           depth.outlier_probability.width() == disparity_px.width() &&
+           depth.outlier_probability.height() == disparity_px.height();
+}
+
 /// False if no point gave the measurement, or if its sums left the range of a float. Such a
 /// measurement gives neither a height nor a ray endpoint.
 bool says_something(const CellMeasurement& measured) {
@@ -85,22 +93,35 @@ FusionCounts ElevationMap::add(const camera::RectifiedRig& rig,
                                const DepthImage& depth,
                                std::int64_t time_ns,
                                Executor& executor) {
+    const DepthView view{rig, depth};
+    return add(std::span(&view, 1), T_odom_body, time_ns, executor);
+}
+
+FusionCounts ElevationMap::add(std::span<const DepthView> views,
+                               const Pose& T_odom_body,
+                               std::int64_t time_ns,
+                               Executor& executor) {
     FusionCounts counts;
+    SUREFOOT_ASSERT(!views.empty() && views.size() <= kMostViews);
     if (!T_odom_body.all_finite()) return counts;
-    const Image<float>& disparity_px = depth.disparity_px;
-    SUREFOOT_ASSERT(depth.sigma_px.width() == disparity_px.width() &&
-                    depth.sigma_px.height() == disparity_px.height() &&
-                    depth.outlier_probability.width() == disparity_px.width() &&
-                    depth.outlier_probability.height() == disparity_px.height());
-    if (DepthSampler::can(config_)) {
-        sampler_.sample(config_, rig, T_odom_body, depth, geometry(), executor, samples_, counts);
-    } else {
-        points_from_depth(config_, rig, T_odom_body, depth, geometry().origin_m, points_, counts);
-        sample_points(counts);
+    view_count_ = views.size();
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const auto& [rig, depth] = views[i];
+        SUREFOOT_ASSERT(has_equal_sizes(depth));
+        Samples& samples = samples_of_view(i);
+        if (DepthSampler::can(config_)) {
+            samples.sampler.sample(
+                config_, rig, T_odom_body, depth, geometry(), executor, samples.of_image, counts);
+        } else {
+            points_from_depth(
+                config_, rig, T_odom_body, depth, geometry().origin_m, points_, counts);
+            sample_points(samples, counts);
+        }
+        samples.expected.emplace(rig, T_odom_body, geometry());
     }
-    const ExpectedPoints expected(rig, T_odom_body, geometry());
+    const camera::RectifiedRig& rig = views.back().rig;
     const Eigen::Vector3d camera_m = (T_odom_body * rig.T_body_camera).translation_m;
-    fuse_samples(T_odom_body, camera_m, &expected, time_ns, executor, counts);
+    fuse_samples(T_odom_body, camera_m, time_ns, executor, counts);
     counts.cells_cleared += sight_.apply(time_ns, executor, cells_);
     return counts;
 }
@@ -114,9 +135,12 @@ FusionCounts ElevationMap::add_points(std::span<const MeasuredPoint> points,
     if (!T_odom_body.all_finite() || !T_body_sensor.all_finite()) return counts;
     points_from_cloud(
         config_, points, T_body_sensor, T_odom_body, geometry().origin_m, points_, counts);
-    sample_points(counts);
+    view_count_ = 1;
+    Samples& samples = samples_of_view(0);
+    sample_points(samples, counts);
+    samples.expected.reset();
     const Eigen::Vector3d sensor_m = (T_odom_body * T_body_sensor).translation_m;
-    fuse_samples(T_odom_body, sensor_m, nullptr, time_ns, executor, counts);
+    fuse_samples(T_odom_body, sensor_m, time_ns, executor, counts);
     counts.cells_cleared += sight_.apply(time_ns, executor, cells_);
     return counts;
 }
@@ -152,7 +176,12 @@ Result<std::int64_t> ElevationMap::insert(const grid::MapRegion& region,
     return filled;
 }
 
-void ElevationMap::sample_points(FusionCounts& counts) {
+ElevationMap::Samples& ElevationMap::samples_of_view(std::size_t view) {
+    if (view == samples_.size()) samples_.emplace_back();
+    return samples_[view];
+}
+
+void ElevationMap::sample_points(Samples& samples, FusionCounts& counts) {
     const PrefilterConfig& cut = config_.prefilter;
     std::span<GridPoint> points = points_;
     if (cut.down_sampling) points = points.first(filter_.down_sample(cut.sampling_m, points));
@@ -162,32 +191,34 @@ void ElevationMap::sample_points(FusionCounts& counts) {
         counts.gated_density += static_cast<std::int64_t>(points.size() - kept);
         points = points.first(kept);
     }
-    counts.outside += samples_from_points(points, geometry(), samples_);
+    counts.outside += samples_from_points(points, geometry(), samples.of_image);
 }
 
 void ElevationMap::fuse_samples(const Pose& T_odom_body,
                                 const Eigen::Vector3d& camera_m,
-                                const ExpectedPoints* expected,
                                 std::int64_t time_ns,
                                 Executor& executor,
                                 FusionCounts& counts) {
     const RowBlocks rows(geometry());
-    groups_.assign(samples_, layers().height_m.size());
+    const auto nx = static_cast<std::size_t>(geometry().nx);
+    for (std::size_t i = 0; i < view_count_; ++i) {
+        samples_[i].groups.assign(samples_[i].of_image, layers().height_m.size());
+        if (view_count_ > 1)
+            samples_[i].measured.resize(static_cast<std::size_t>(rows.count()) * nx);
+    }
     sight_.reset(geometry(), camera_m);
     lowest_z_m_ = lowest_z_m(config_.prefilter, T_odom_body);
     const bool aligns = config_.height_drift.enabled;
-    measured_.resize(static_cast<std::size_t>(aligns ? geometry().ny : rows.count()) *
-                     static_cast<std::size_t>(geometry().nx));
+    measured_.resize(static_cast<std::size_t>(aligns ? geometry().ny : rows.count()) * nx);
+    view_.assign(measured_.size(), 0);
     block_counts_.assign(static_cast<std::size_t>(rows.count()), {});
     if (aligns) align_heights(T_odom_body, camera_m, executor);
     struct Job {
         ElevationMap& map;
-        const ExpectedPoints* expected = nullptr;
         FrameObservation look;
-    } job{*this, expected, {views_, views_.look_from(T_odom_body), time_ns}};
+    } job{*this, {views_, views_.look_from(T_odom_body), time_ns}};
     // The closure holds one reference only, so std::function allocates no memory.
-    executor.parallel_for(rows.count(),
-                          [&job](int block) { job.map.fuse_block(block, job.expected, job.look); });
+    executor.parallel_for(rows.count(), [&job](int block) { job.map.fuse_block(block, job.look); });
     for (const FusionCounts& block : block_counts_) counts += block;
 }
 
@@ -237,57 +268,107 @@ void ElevationMap::align_heights(const Pose& T_odom_body,
 
 void ElevationMap::reduce_block(int block) {
     const RowBlocks rows(geometry());
-    for (int iy = rows.first(block); iy < rows.last(block); ++iy)
-        reduce_row(iy, measurements_of_row(iy));
+    for (int iy = rows.first(block); iy < rows.last(block); ++iy) reduce_row(iy);
 }
 
-void ElevationMap::reduce_row(int iy, CellMeasurement* measured) const {
-    const std::uint32_t* begin = groups_.begin() + static_cast<std::ptrdiff_t>(iy) * geometry().nx;
-    reduce_cells(
-        config_.reduction, begin, geometry().nx, groups_.z_m(), groups_.var_m2(), measured);
-}
-
-CellMeasurement* ElevationMap::measurements_of_row(int iy) {
+std::ptrdiff_t ElevationMap::row_start(int iy) const {
     const int row = config_.height_drift.enabled ? iy : RowBlocks::of_row(iy);
-    return measured_.data() + static_cast<std::ptrdiff_t>(row) * geometry().nx;
+    return static_cast<std::ptrdiff_t>(row) * geometry().nx;
 }
 
-void ElevationMap::fuse_block(int block,
-                              const ExpectedPoints* expected,
-                              const FrameObservation& look) {
+void ElevationMap::reduce_row(int iy) {
+    const int nx = geometry().nx;
+    CellMeasurement* const measured = measured_.data() + row_start(iy);
+    const std::ptrdiff_t scratch = static_cast<std::ptrdiff_t>(RowBlocks::of_row(iy)) * nx;
+    for (std::size_t i = 0; i < view_count_; ++i) {
+        const CellGroups& groups = samples_[i].groups;
+        reduce_cells(config_.reduction,
+                     groups.begin() + static_cast<std::ptrdiff_t>(iy) * nx,
+                     nx,
+                     groups.z_m(),
+                     groups.var_m2(),
+                     view_count_ > 1 ? samples_[i].measured.data() + scratch : measured);
+    }
+    if (view_count_ == 1) return;
+    std::uint8_t* const view = view_.data() + row_start(iy);
+    for (int ix = 0; ix < nx; ++ix) {
+        const std::size_t best = best_view(ix, iy);
+        view[ix] = static_cast<std::uint8_t>(best);
+        measured[ix] = samples_[best].measured[static_cast<std::size_t>(scratch + ix)];
+    }
+}
+
+std::size_t ElevationMap::best_view(int ix, int iy) const {
+    const auto at =
+        static_cast<std::size_t>(RowBlocks::of_row(iy)) * static_cast<std::size_t>(geometry().nx) +
+        static_cast<std::size_t>(ix);
+    std::size_t best = view_count_ - 1;
+    float best_density = 0.0F;  // 0 if the view measures nothing
+    for (std::size_t i = view_count_; i-- > 0;) {
+        const CellMeasurement& measured = samples_[i].measured[at];
+        if (!says_something(measured) || reaches_out(samples_[i], ix, iy, measured)) continue;
+        const float density = density_ratio(samples_[i], ix, iy, measured.z_m);
+        if (density < kLeastShareOfCoarser * best_density) continue;
+        best = i;
+        best_density = density;
+    }
+    return best;
+}
+
+float ElevationMap::density_ratio(const Samples& samples, int ix, int iy, float z_m) const {
+    const float level = samples.expected ? samples.expected->at(ix, iy, z_m) : 0.0F;
+    return level > 0.0F ? static_cast<float>(points_of(samples, ix, iy)) / level : kNanF;
+}
+
+bool ElevationMap::reaches_out(const Samples& samples,
+                               int ix,
+                               int iy,
+                               const CellMeasurement& measured) const {
+    if (!samples.expected) return false;
+    return static_cast<float>(points_of(samples, ix, iy)) <
+               static_cast<float>(config_.reduction.border_share) *
+                   samples.expected->at(ix, iy, measured.z_m) &&
+           !samples.expected->is_whole_in_view(ix, iy, measured.z_m);
+}
+
+std::uint32_t ElevationMap::points_of(const Samples& samples, int ix, int iy) const {
+    const std::uint32_t* begin = samples.groups.begin() +
+                                 static_cast<std::ptrdiff_t>(iy) * geometry().nx +
+                                 static_cast<std::ptrdiff_t>(ix);
+    return begin[1] - begin[0];
+}
+
+void ElevationMap::fuse_block(int block, const FrameObservation& look) {
     const int nx = geometry().nx;
     const RowBlocks rows(geometry());
     FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
-    const auto border_share = static_cast<float>(config_.reduction.border_share);
     for (int iy = rows.first(block); iy < rows.last(block); ++iy) {
-        const std::uint32_t* begin = groups_.begin() + static_cast<std::ptrdiff_t>(iy) * nx;
-        CellMeasurement* measured = measurements_of_row(iy);
-        if (!config_.height_drift.enabled) reduce_row(iy, measured);
+        if (!config_.height_drift.enabled) reduce_row(iy);
+        const CellMeasurement* measured = measured_.data() + row_start(iy);
+        const std::uint8_t* view = view_.data() + row_start(iy);
         for (int ix = 0; ix < nx; ++ix) {
             if (!says_something(measured[ix])) continue;
             const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
                               static_cast<std::size_t>(ix);
+            const Samples& samples = samples_[view[ix]];
             if (measured[ix].z_m < lowest_z_m_) {
-                counts.gated_height += begin[ix + 1] - begin[ix];
+                counts.gated_height += points_of(samples, ix, iy);
                 const float not_above_m = sight_.not_above_m(measured[ix].z_m, measured[ix].var_m2);
                 if (std::isnan(layers().height_m.data()[cell]))
                     cells_.see_over(cell, std::max(lowest_z_m_, not_above_m));
                 continue;
             }
-            CellObservation seen{measured[ix], kNanF, measured[ix].z_m};
-            if (expected != nullptr) {
-                const auto points = static_cast<float>(begin[ix + 1] - begin[ix]);
-                const float level = expected->at(ix, iy, measured[ix].z_m);
-                if (points < border_share * level &&
-                    !expected->is_whole_in_view(ix, iy, measured[ix].z_m)) {
-                    counts.gated_border += begin[ix + 1] - begin[ix];
-                    continue;
-                }
-                if (level > 0.0F) seen.density_ratio = points / level;
-                const float lowest_m = measured[ix].lowest_m;
-                if (points > kFaceDensity * expected->at(ix, iy, lowest_m))
-                    seen.bottom_m = std::min(lowest_m, measured[ix].z_m);
+            if (reaches_out(samples, ix, iy, measured[ix])) {
+                counts.gated_border += points_of(samples, ix, iy);
+                continue;
             }
+            const bool is_fine = view[ix] + std::size_t{1} < view_count_;
+            CellObservation seen{measured[ix], kNanF, measured[ix].z_m, is_fine};
+            seen.density_ratio = density_ratio(samples, ix, iy, measured[ix].z_m);
+            const float lowest_m = measured[ix].lowest_m;
+            if (samples.expected && static_cast<float>(points_of(samples, ix, iy)) >
+                                        kFaceDensity * samples.expected->at(ix, iy, lowest_m))
+                seen.bottom_m = std::min(lowest_m, measured[ix].z_m);
             sight_.ended(cell, measured[ix].z_m, measured[ix].var_m2, seen.bottom_m);
             cells_.update(cell, seen, look, counts);
         }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +29,18 @@
 
 namespace surefoot::elevation {
 
+/// A depth image and the camera that it belongs to. Both must outlive the call that receives the
+/// view.
+struct DepthView {
+    const camera::RectifiedRig& rig;
+    const DepthImage& depth;
+};
+
+/// A cell takes the measurement of a finer view only if this view has at least this share of the
+/// point density of the coarser view. Otherwise the finer matches failed there. ASSUMPTION.
+inline constexpr float kLeastShareOfCoarser = 0.5F;
+inline constexpr std::size_t kMostViews = 8;  ///< largest number of views of one frame
+
 /// Robot-centric elevation map in odom (Fankhauser 2014): one height with its variance per cell, in
 /// a window that moves with the body. Call `follow` for every motion, then `add` for a frame that
 /// has depth. Variances are relative to the present body: `follow` increases them by the drift of
@@ -49,6 +63,14 @@ class ElevationMap {
     FusionCounts add(const camera::RectifiedRig& rig,
                      const Pose& T_odom_body,
                      const DepthImage& depth,
+                     std::int64_t time_ns,
+                     Executor& executor = serial());
+    /// Fuses depth images of one instant: parts in which a finer image was matched, finest first,
+    /// then the whole image. Each cell takes the measurement of the first view that has at least
+    /// kLeastShareOfCoarser of the point density of every later view.
+    /// At most kMostViews views.
+    FusionCounts add(std::span<const DepthView> views,
+                     const Pose& T_odom_body,
                      std::int64_t time_ns,
                      Executor& executor = serial());
     /// Fuses a cloud, as `add` fuses an image. Skips invalid points (see `points_from_cloud`).
@@ -85,10 +107,20 @@ class ElevationMap {
 
   private:
     void inflate(const MotionNoise& noise, const Eigen::Vector3d& body_m);
-    void sample_points(FusionCounts& counts);
+    /// Samples of one view, grouped by cell.
+    struct Samples {
+        DepthSampler sampler;
+        CellSamples of_image;
+        CellGroups groups;
+        std::optional<ExpectedPoints> expected;  ///< empty for clouds
+        /// One row per block; used if a frame has more than one view.
+        std::vector<CellMeasurement> measured;
+    };
+
+    Samples& samples_of_view(std::size_t view);
+    void sample_points(Samples& samples, FusionCounts& counts);
     void fuse_samples(const Pose& T_odom_body,
                       const Eigen::Vector3d& camera_m,
-                      const ExpectedPoints* expected,
                       std::int64_t time_ns,
                       Executor& executor,
                       FusionCounts& counts);
@@ -97,10 +129,22 @@ class ElevationMap {
                        const Eigen::Vector3d& camera_m,
                        Executor& executor);
     void reduce_block(int block);
-    void reduce_row(int iy, CellMeasurement* measured) const;
-    /// Memory for the measurements of a row. Rows of a block share it unless heights are aligned.
-    CellMeasurement* measurements_of_row(int iy);
-    void fuse_block(int block, const ExpectedPoints* expected, const FrameObservation& look);
+    /// Measures the cells of a row.
+    void reduce_row(int iy);
+    /// Returns the view whose measurement the cell takes.
+    [[nodiscard]] std::size_t best_view(int ix, int iy) const;
+    /// Number of points in a cell, divided by that of level ground; NaN = unknown.
+    [[nodiscard]] float density_ratio(const Samples& samples, int ix, int iy, float z_m) const;
+    /// True if the cell reaches beyond the image and has too few points (see `border_share`).
+    [[nodiscard]] bool reaches_out(const Samples& samples,
+                                   int ix,
+                                   int iy,
+                                   const CellMeasurement& measured) const;
+    [[nodiscard]] std::uint32_t points_of(const Samples& samples, int ix, int iy) const;
+    /// First element of a row in `measured_` and `view_`. Rows of a block share it unless heights
+    /// are aligned.
+    [[nodiscard]] std::ptrdiff_t row_start(int iy) const;
+    void fuse_block(int block, const FrameObservation& look);
 
     ElevationConfig config_;
     grid::MovingWindow window_;
@@ -108,11 +152,11 @@ class ElevationMap {
     ElevationCells cells_;
     CloudFilter filter_;
     std::vector<GridPoint> points_;
-    DepthSampler sampler_;
-    CellSamples samples_;
-    CellGroups groups_;
+    std::deque<Samples> samples_;  ///< one element per view, in the order of the views
+    std::size_t view_count_ = 0;   ///< number of views of this frame
     /// One row of cells per block, or all cells if heights are aligned.
     std::vector<CellMeasurement> measured_;
+    std::vector<std::uint8_t> view_;  ///< view of each element of `measured_`
     VisibilityCleanup sight_;
     float lowest_z_m_ = 0.0F;                 ///< lower height limit of this frame, in odom
     std::vector<FusionCounts> block_counts_;  ///< one count per block

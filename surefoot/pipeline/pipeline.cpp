@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "surefoot/camera/rig_scaling.hpp"
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
@@ -87,6 +88,15 @@ grid::SnapshotHealth snapshot_health(Health health) {
     return grid::SnapshotHealth::lost;
 }
 
+/// Only a stereo pair can be matched at two sizes.
+int scale_of(const FineConfig& config, const camera::StereoRig& rig) {
+    return rig.right ? fine_scale(config, rig.left.width, rig.left.height) : 1;
+}
+
+bool has_depth(const StereoFrame& frame) {
+    return frame.known_depth || frame.right.empty();
+}
+
 }  // namespace
 
 Result<Pipeline> Pipeline::make(const PipelineConfig& config,
@@ -119,9 +129,12 @@ Pipeline::Pipeline(const PipelineConfig& config,
       executor_(&executor),
       clock_(clock),
       nominal_rig_(rig),
+      corrected_rig_(rig),
+      scale_(scale_of(config.fine, rig)),
       rectifier_(std::move(rectifier)),
       odometry_(config.odometry, *rectifier_, rig.imu),
-      matcher_(stereo::make_matcher(config.stereo)),
+      matcher_(stereo::make_matcher(at_scale(config.stereo, scale_))),
+      fine_schedule_(config.fine),
       map_(config.elevation),
       mirror_watch_(config.specular),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
@@ -134,9 +147,15 @@ Pipeline::Pipeline(const PipelineConfig& config,
 const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
                                  const std::optional<Pose>& T_odom_first_body) {
     first_frames = first_frames.first(std::min(first_frames.size(), kAlignmentFrames));
+    if (std::any_of(first_frames.begin(), first_frames.end(), has_depth)) scale_ = 1;
+    // Undoes the result of an earlier alignment.
+    if (self_calibration_ || fine_) see_with(nominal_rig_);
+    self_calibration_.reset();
     correct_right_camera(first_frames);
     alignment_ =
         T_odom_first_body ? known_alignment(*T_odom_first_body) : measure_alignment(first_frames);
+    // Errors of the placement stay in the whole map, so it is measured at full size.
+    if (scale_ > 1) see_coarsely();
     odometry_.start_at(alignment_.T_odom_body);
     tilt_drift_correction_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
     feature_tracker_.forget();  // odom is a new coordinate frame
@@ -196,10 +215,10 @@ std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFram
         if (frame.known_depth || frame.right.empty() || !frame.frame_status.is_new_and_whole())
             continue;
         rectify(frame);
-        const auto found =
-            stereo::match_corners(pair_.left.view(),
-                                  pair_.right.view(),
-                                  {config_.stereo.disparities, kSelfCalibrationRows_px});
+        const auto found = stereo::match_corners(
+            pair_.left.view(),
+            pair_.right.view(),
+            {at_scale(config_.stereo, scale_).disparities, kSelfCalibrationRows_px});
         corners.insert(corners.end(), found.matched.begin(), found.matched.end());
     }
     return corners;
@@ -208,16 +227,44 @@ std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFram
 bool Pipeline::see_with(const camera::StereoRig& rig) {
     auto rectifier = camera::Rectifier::make(rig, config_.camera);
     if (!rectifier) return false;
+    corrected_rig_ = rig;
     rectifier_ = std::make_unique<camera::Rectifier>(std::move(rectifier).value());
     odometry_ = odometry::Odometry(config_.odometry, *rectifier_, imu_mount_);
+    if (fine_) {
+        fine_.reset();
+        matcher_ = stereo::make_matcher(at_scale(config_.stereo, scale_));
+    }
     return true;
 }
 
-void Pipeline::correct_right_camera(std::span<const StereoFrame> frames) {
-    if (self_calibration_) {  // result of an earlier alignment
-        see_with(nominal_rig_);
-        self_calibration_.reset();
+void Pipeline::see_coarsely() {
+    camera::RectificationConfig config = config_.camera;
+    config.rectified_focal_px /= scale_;
+    auto coarse = camera::Rectifier::make(camera::shrunk(corrected_rig_, scale_), config);
+    if (!coarse) {  // too small to be rectified
+        scale_ = 1;
+        return;
     }
+    fine_.emplace(std::move(rectifier_), std::move(matcher_));
+    rectifier_ = std::make_unique<camera::Rectifier>(std::move(coarse).value());
+    matcher_ = stereo::make_matcher(config_.stereo);
+    odometry_ = odometry::Odometry(config_.odometry, *rectifier_, imu_mount_);
+}
+
+const StereoFrame& Pipeline::coarse(const StereoFrame& frame) {
+    if (!fine_) return frame;
+    coarse_frame_.time_ns = frame.time_ns;
+    coarse_frame_.index = frame.index;
+    coarse_frame_.imu = frame.imu;
+    coarse_frame_.machine_motion = frame.machine_motion;
+    coarse_frame_.known_motion = frame.known_motion;
+    coarse_frame_.frame_status = frame.frame_status;
+    camera::shrink(frame.left.view(), scale_, coarse_frame_.left);
+    camera::shrink(frame.right.view(), scale_, coarse_frame_.right);
+    return coarse_frame_;
+}
+
+void Pipeline::correct_right_camera(std::span<const StereoFrame> frames) {
     if (!config_.self_calibration.enabled || !nominal_rig_.right) return;
     for (int round = 0; round < kSelfCalibrationRounds; ++round) {
         auto found =
@@ -234,8 +281,9 @@ void Pipeline::correct_right_camera(std::span<const StereoFrame> frames) {
     }
 }
 
-FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
-    FrameReport report = check(frame, work);
+FrameReport Pipeline::process(const StereoFrame& full_frame, Work work) {
+    FrameReport report = check(full_frame, work);
+    const StereoFrame& frame = coarse(full_frame);
     if (!report.frame_status.is_new_and_whole()) return skip(frame, std::move(report));
     StageTimer timer(clock_, report);
 
@@ -246,19 +294,21 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
         const camera::RectifiedPair& pair = rectify(frame);
         timer.finished(Stage::rectify);
         const DepthImage& depth = measure_depth(frame, pair);
+        const bool is_fine = measure_fine_depth(full_frame, motion);
         timer.finished(Stage::stereo);
         report.ground =
             observe_ground(depth, motion.T_odom_body, Eigen::Vector3d::UnitZ()).observation;
         watch_mount(motion, report.ground);
         watch_mirrors(pair, depth, motion, report.ground);
         timer.finished(Stage::ground);
-        report.fusion = fuse(depth, motion);
+        report.fusion = fuse(depth, is_fine, motion);
         timer.finished(Stage::fuse);
         rate();
         timer.finished(Stage::traversability);
         find_features(depth, motion);
         timer.finished(Stage::stairs);
         report.depth_pixels = count_valid(depth.disparity_px);
+        if (is_fine) report.fine_pixels = count_valid(fine_->depth().disparity_px);
         report.image_pixels = static_cast<std::int64_t>(depth.disparity_px.size());
     } else if (rated_at_m_ != map_.geometry().origin_m) {
         rate();  // the window moved: the old ratings belong to other cells
@@ -387,10 +437,30 @@ void Pipeline::hide_mirrored_ground() {
     specular::hide_behind(panes(), config_.specular, geometry, hidden_.view());
 }
 
-FusionCounts Pipeline::fuse(const DepthImage& depth, const MotionEstimate& motion) {
+bool Pipeline::measure_fine_depth(const StereoFrame& frame, const MotionEstimate& motion) {
+    if (!fine_ || has_depth(frame) || !alignment_.has_ground || motion.health == Health::lost ||
+        !fine_schedule_.is_due(motion.time_ns, motion.T_odom_body))
+        return false;
+    const camera::PixelBox box = fine_region(config_.fine,
+                                             fine_->whole_rig(),
+                                             motion.T_odom_body,
+                                             alignment_.ground_height_m,
+                                             at_scale(config_.stereo, scale_).disparities);
+    if (box.width == 0) return false;
+    fine_->measure(frame, box, *executor_);
+    fine_schedule_.observed();
+    return true;
+}
+
+FusionCounts Pipeline::fuse(const DepthImage& depth, bool with_fine, const MotionEstimate& motion) {
     if (motion.health == Health::lost) return {};  // the pose is unknown
-    const FusionCounts counts =
-        map_.add(rectifier_->rig(), motion.T_odom_body, depth, motion.time_ns, *executor_);
+    const elevation::DepthView whole{rectifier_->rig(), depth};
+    const FusionCounts counts = [&] {
+        if (!with_fine)
+            return map_.add({&whole, 1}, motion.T_odom_body, motion.time_ns, *executor_);
+        const elevation::DepthView views[] = {{fine_->rig(), fine_->depth()}, whole};
+        return map_.add(views, motion.T_odom_body, motion.time_ns, *executor_);
+    }();
     if (!shows_ground(counts, map_.geometry().resolution_m)) return counts;
     last_fused_ns_ = motion.time_ns;
     ++version_;

@@ -20,6 +20,7 @@
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/pipeline/camera_monitor.hpp"
+#include "surefoot/pipeline/fine_depth.hpp"
 #include "surefoot/pipeline/mount_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
 #include "surefoot/pipeline/tilt_drift_correction.hpp"
@@ -42,6 +43,10 @@ using Clock = std::int64_t (*)();
 /// would read a frozen picture as a machine at rest. Then the snapshot keeps the stamps of the last
 /// good frame, so that the gate notices the age. After several bad frames in a row, the snapshot
 /// also names the problem of the camera.
+///
+/// `align` uses the full images. Then large images are made smaller (FineConfig::scale): odometry,
+/// depth and all results refer to the smaller images (`rig()`). The map also takes depth of the
+/// full images, in the fine region. Images that come with depth are not made smaller.
 ///
 /// Frames too bright or too dark get odometry only; several in a row are reported in the same way.
 /// If a frame measures less than 0.01 m^2 of the map, the snapshot keeps the older stamp.
@@ -72,6 +77,8 @@ class Pipeline {
 
     [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rectifier_->rig(); }
+    /// Size of the images divided by the size of `rig()`, see FineConfig::scale.
+    [[nodiscard]] int scale() const noexcept { return scale_; }
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
     /// True if neither the rig nor the settings state the mounting of the camera.
     [[nodiscard]] bool is_mount_unknown() const;
@@ -120,8 +127,13 @@ class Pipeline {
              Clock clock);
 
     [[nodiscard]] Alignment measure_alignment(std::span<const StereoFrame> first_frames);
-    /// Changes to another rig. Returns false without changes if the rig cannot be rectified.
+    /// Changes to another rig and to the full size. Returns false without changes if the rig cannot
+    /// be rectified.
     bool see_with(const camera::StereoRig& rig);
+    /// Changes from the full to the coarse size.
+    void see_coarsely();
+    /// Returns the frame that odometry and coarse depth use. It is kept until the next call.
+    const StereoFrame& coarse(const StereoFrame& frame);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
     /// Returns the frame's `known_motion`, moved to the start `T_odom_first`, or the odometry's.
@@ -153,7 +165,12 @@ class Pipeline {
                        const MotionEstimate& motion,
                        const GroundObservation& ground_body);
     void hide_mirrored_ground();
-    [[nodiscard]] FusionCounts fuse(const DepthImage& depth, const MotionEstimate& motion);
+    /// Matches the fine region of the frame at full size, if it is time. Returns true if it did.
+    bool measure_fine_depth(const StereoFrame& frame, const MotionEstimate& motion);
+    /// Adds the depth image, and the fine depth if `with_fine`, to the map.
+    [[nodiscard]] FusionCounts fuse(const DepthImage& depth,
+                                    bool with_fine,
+                                    const MotionEstimate& motion);
     void rate();
     [[nodiscard]] stairs::Terrain terrain(const DepthImage& depth,
                                           const MotionEstimate& motion) const;
@@ -163,11 +180,16 @@ class Pipeline {
     Executor* executor_;
     Clock clock_;
     camera::StereoRig nominal_rig_;
+    camera::StereoRig corrected_rig_;  ///< by the online rig self-calibration
+    int scale_;                        ///< full size / coarse size
     std::optional<stereo::RigSelfCalibration> self_calibration_;
     std::unique_ptr<camera::Rectifier> rectifier_;  // address stays: the odometry refers to it
     camera::FrameIntegrityCheck watch_;
     odometry::Odometry odometry_;
     std::unique_ptr<stereo::Matcher> matcher_;
+    StereoFrame coarse_frame_;
+    std::optional<FineDepth> fine_;  ///< empty at full size: if `scale_` is 1, and in `align`
+    FineSchedule fine_schedule_;
     elevation::ElevationMap map_;
     specular::MirrorWatch mirror_watch_;
     Image<std::uint8_t> hidden_;  ///< map cells at or behind a suspected pane; may be empty

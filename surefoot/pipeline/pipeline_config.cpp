@@ -12,6 +12,7 @@ void PipelineConfig::describe(ConfigVisitor& visitor) {
     visitor.group("level", level);
     visitor.group("camera", camera);
     visitor.group("stereo", stereo);
+    visitor.group("fine", fine);
     visitor.group("self_calibration", self_calibration);
     visitor.group("odometry", odometry);
     visitor.group("ground", ground);
@@ -24,6 +25,7 @@ void PipelineConfig::describe(ConfigVisitor& visitor) {
 
 std::optional<std::string> PipelineConfig::problem() const {
     if (auto found = stereo.problem()) return found;
+    if (auto found = fine.problem()) return found;
     if (auto found = elevation.problem()) return found;
     // The gate's snapshot counts in 0.1 mm, so a cell must be a whole number of 0.1 mm.
     const double tenths = elevation.resolution_m * 1e4;

@@ -10,6 +10,7 @@
 #include "surefoot/ground/ground_config.hpp"
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
+#include "surefoot/pipeline/fine_depth.hpp"
 #include "surefoot/pipeline/tilt_drift_correction.hpp"
 #include "surefoot/specular/specular_config.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
@@ -26,6 +27,7 @@ struct PipelineConfig {
     LevelConfig level;
     camera::RectificationConfig camera;
     stereo::MatcherConfig stereo;
+    FineConfig fine;
     stereo::SelfCalibrationConfig self_calibration;
     odometry::OdometryConfig odometry;
     ground::GroundConfig ground;

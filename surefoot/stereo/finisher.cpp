@@ -5,14 +5,6 @@
 #include "surefoot/stereo/consistency.hpp"
 
 namespace surefoot::stereo {
-namespace {
-
-/// Largest disparity difference [px] of neighbours on one surface. A larger difference is a jump
-/// between two surfaces.
-constexpr double kJump_px = 1.0;
-constexpr int kNeighbourhoodRadius_px = 4;
-
-}  // namespace
 
 void Finisher::finish(ImageView<const std::uint8_t> left,
                       ImageView<const std::uint8_t> right,

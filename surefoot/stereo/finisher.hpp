@@ -7,6 +7,12 @@
 
 namespace surefoot::stereo {
 
+/// Largest disparity difference [px] of neighbours on one surface. A larger difference is a jump
+/// between two surfaces.
+inline constexpr double kJump_px = 1.0;
+/// Radius of the window in which unknown pixels are counted (MatchEvidence::unknown_share).
+inline constexpr int kNeighbourhoodRadius_px = 4;
+
 /// The last steps after every search: find disparity jumps, refine the disparities to sub-pixel,
 /// and give every match its sigma and its outlier probability.
 class Finisher {

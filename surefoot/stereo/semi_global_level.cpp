@@ -40,6 +40,11 @@ void find_winners(const kernels::ColumnStep& step, const kernels::WinnerRows& ou
     std::memcpy(out.second_cost, rows[4], size);
 }
 
+/// Moves the state of a path from the disparities of a block to those of the next block.
+void enter(const PathState& path, DisparityRange before, DisparityRange range) {
+    kernels::enter_range(path.costs, before.begin, before.end, range.begin, range.end);
+}
+
 }  // namespace
 
 void LevelPrior::resize(int width, int height, int disparities) {
@@ -54,14 +59,14 @@ void LevelPrior::resize(int width, int height, int disparities) {
     hopeful_.resize(static_cast<std::size_t>(4 * blocks));
 }
 
-std::ptrdiff_t LevelPrior::place(int x, int y) const {
+std::ptrdiff_t LevelPrior::block_offset(int x, int y) const {
     return (static_cast<std::ptrdiff_t>(y) * blocks_x_ + x) * block_size_;
 }
 
 kernels::PriorBlock LevelPrior::quarter(
     const AlignedBytes& costs, int x, int y, int line, int lane) const {
     const auto searched = searched_[static_cast<std::size_t>(y / 2 * blocks_x_ + x / 2)];
-    return {costs.data() + place(x / 2, y / 2) + line * kernels::kCostLine + lane,
+    return {costs.data() + block_offset(x / 2, y / 2) + line * kernels::kCostLine + lane,
             searched.begin,
             searched.end,
             disparities_,
@@ -80,22 +85,22 @@ DisparityRange LevelPrior::hopeful(int x, int y) const {
     return hopeful_[static_cast<std::size_t>(2 * y * blocks_x_ + x)];
 }
 
-DisparityRange& LevelPrior::hopeful(int x, int y) {
-    return hopeful_[static_cast<std::size_t>(2 * y * blocks_x_ + x)];
-}
-
-DisparityRange& LevelPrior::searched(int x, int y) {
-    return searched_[static_cast<std::size_t>(y * blocks_x_ + x)];
-}
-
 std::uint8_t* LevelPrior::row(int x, int y, int line) const {
-    return rows_.data() + place(x, y) + line * kernels::kCostLine;
+    return rows_.data() + block_offset(x, y) + line * kernels::kCostLine;
 }
 
-void LevelPrior::turn(int x, int y) {
-    const DisparityRange range = searched(x, y);
-    for (int d = range.begin; d < range.end; ++d) {
-        const std::ptrdiff_t at = place(x, y) + kernels::cost_at(d);
+void LevelPrior::finish_block(int x,
+                              int y,
+                              DisparityRange searched,
+                              const DisparityRange hopeful[4]) {
+    searched_[static_cast<std::size_t>(y * blocks_x_ + x)] = searched;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const int row = 2 * y + quarter / 2;
+        const int column = 2 * x + quarter % 2;
+        hopeful_[static_cast<std::size_t>(2 * row * blocks_x_ + column)] = hopeful[quarter];
+    }
+    for (int d = searched.begin; d < searched.end; ++d) {
+        const std::ptrdiff_t at = block_offset(x, y) + kernels::cost_at(d);
         kernels::transpose(
             rows_.data() + at, kernels::kCostLine, columns_.data() + at, kernels::kCostLine);
     }
@@ -113,8 +118,10 @@ void LevelSearch::set_ranges() {
     for (int y = 0; y < strips(); ++y) {
         for (int x = 0; x < blocks(); ++x) {
             DisparityRange& range = ranges_[static_cast<std::size_t>(y * blocks() + x)];
-            range = {0, config_.disparities};
-            if (smaller_ == nullptr) continue;
+            if (smaller_ == nullptr) {
+                range = {0, config_.disparities};
+                continue;
+            }
             const DisparityRange hopeful = smaller_->hopeful(x, y);
             range = {step_down(2 * hopeful.begin - kRangeMargin),
                      std::min(config_.disparities,
@@ -142,7 +149,7 @@ void LevelSearch::resize(int strips_at_once) {
         if (smaller_ == nullptr) std::memset(strip.prior_costs.data(), 0, line);
         if (prior_ == nullptr) continue;
         strip.row_sums.resize(line);
-        strip.nearest.resize(2 * line);
+        strip.least_excess.resize(2 * line);
     }
     column_priors_.resize(static_cast<std::size_t>(blocks()) * line);
     if (smaller_ == nullptr)
@@ -161,10 +168,6 @@ void LevelSearch::take_census(int strip) {
         left_census_.make_row(left_, width_, v);
         right_census_.make_row(right_, width_, v);
     }
-}
-
-void LevelSearch::enter(const PathState& path, DisparityRange before, DisparityRange range) const {
-    kernels::enter_range(path.costs, before.begin, before.end, range.begin, range.end);
 }
 
 /// Transposes census words and grey levels of a strip, so that rows lie in the lanes.
@@ -325,7 +328,8 @@ void LevelSearch::follow_columns(const Strip& s, int block) {
     const PathState above = from_above_.at(block);
     enter(above, range(block, s.index - 1), range(block, s.index));
     const std::ptrdiff_t half = static_cast<std::ptrdiff_t>(config_.disparities) * kLanes;
-    if (prior_ != nullptr) std::memset(s.nearest.data(), 255, static_cast<std::size_t>(2 * half));
+    if (prior_ != nullptr)
+        std::memset(s.least_excess.data(), 255, static_cast<std::size_t>(2 * half));
     for (int v = begin; v < end; ++v) {
         prefetch_row(u, std::min(v + 1, end - 1));
         const kernels::ColumnStep step = step_of(v, v - 1, above);
@@ -334,7 +338,7 @@ void LevelSearch::follow_columns(const Strip& s, int block) {
         if (prior_ == nullptr) continue;
         kernels::PriorRow row;
         row.costs = prior_->row(block, s.index, v - begin) + kernels::cost_at(step.begin);
-        row.nearest = s.nearest.data() + (v - begin >= kHalf ? half : 0);
+        row.least_excess = s.least_excess.data() + (v - begin >= kHalf ? half : 0);
         row.sums = s.row_sums.data();
         row.shift = kPriorShift;
         kernels::finish_prior_row(step, row);
@@ -344,23 +348,21 @@ void LevelSearch::follow_columns(const Strip& s, int block) {
 /// Completes the prior of a block: its columns, and which disparities are hopeful in its quarters.
 void LevelSearch::give_prior(const Strip& s, int block) {
     const DisparityRange searched = range(block, s.index);
-    prior_->searched(block, s.index) = searched;
-    prior_->turn(block, s.index);
+    DisparityRange hopeful[4];
     for (int quarter = 0; quarter < 4; ++quarter) {
+        hopeful[quarter] = {config_.disparities, 0};
         const int lane = kHalf * (quarter % 2);
         const int columns = std::min(kHalf, width_ - block * kLanes - lane);
-        const std::uint8_t* nearest =
-            s.nearest.data() +
+        const std::uint8_t* excess =
+            s.least_excess.data() +
             static_cast<std::ptrdiff_t>(quarter / 2) * config_.disparities * kLanes + lane;
-        DisparityRange hopeful{config_.disparities, 0};
-        for (int d = searched.begin; d < searched.end; ++d, nearest += kLanes) {
-            if (columns <= 0 || *std::min_element(nearest, nearest + columns) >= kHopeless)
-                continue;
-            hopeful.begin = std::min(hopeful.begin, d);
-            hopeful.end = d + 1;
+        for (int d = searched.begin; d < searched.end; ++d, excess += kLanes) {
+            if (columns <= 0 || *std::min_element(excess, excess + columns) >= kHopeless) continue;
+            hopeful[quarter].begin = std::min(hopeful[quarter].begin, d);
+            hopeful[quarter].end = d + 1;
         }
-        prior_->hopeful(2 * block + quarter % 2, 2 * s.index + quarter / 2) = hopeful;
     }
+    prior_->finish_block(block, s.index, searched, hopeful);
 }
 
 /// Processes blocks from right to left, directly behind the strip above.

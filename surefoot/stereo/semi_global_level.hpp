@@ -25,18 +25,17 @@ class LevelPrior {
     [[nodiscard]] kernels::PriorBlock rows_of(int x, int y) const;
     [[nodiscard]] kernels::PriorBlock columns_of(int x, int y) const;
     /// Disparities of the giving level that are not hopeless in the receiving level's block (x, y).
-    [[nodiscard]] DisparityRange& hopeful(int x, int y);
     [[nodiscard]] DisparityRange hopeful(int x, int y) const;
 
     // For the giving level.
-    [[nodiscard]] DisparityRange& searched(int x, int y);
     /// Costs of row `line` of the block (x, y) from disparity 0 on, in groups.
     [[nodiscard]] std::uint8_t* row(int x, int y, int line) const;
-    /// Makes the columns of the block from its rows.
-    void turn(int x, int y);
+    /// Call once the rows of the block (x, y) are complete. `searched`: disparities of the rows.
+    /// `hopeful`: see hopeful(), for the quarters of the block row by row.
+    void finish_block(int x, int y, DisparityRange searched, const DisparityRange hopeful[4]);
 
   private:
-    [[nodiscard]] std::ptrdiff_t place(int x, int y) const;
+    [[nodiscard]] std::ptrdiff_t block_offset(int x, int y) const;
     [[nodiscard]] kernels::PriorBlock quarter(
         const AlignedBytes& costs, int x, int y, int line, int lane) const;
 
@@ -71,8 +70,8 @@ class LevelSearch {
         PathStates from_right;
         AlignedBytes sums;  ///< of one block, then matching costs; a free group before each part
         AlignedBytes prior_costs;
-        AlignedBytes row_sums;  ///< scratch of a row, if the level gives a prior
-        AlignedBytes nearest;   ///< see PriorRow, for the upper and the lower half of a block
+        AlignedBytes row_sums;      ///< scratch of a row, if the level gives a prior
+        AlignedBytes least_excess;  ///< see PriorRow, for the upper and the lower half of a block
     };
     /// Largest number of strips that are processed at the same time, one per thread. The data of a
     /// strip stay in the cache until they are used.
@@ -84,7 +83,6 @@ class LevelSearch {
     void resize(int strips_at_once);
     void set_ranges();
     void take_census(int strip);
-    void enter(const PathState& path, DisparityRange before, DisparityRange range) const;
     void turn_strip(const Strip& s);
     void pass_strip(const Strip& s);
     void pass_up(int block);

@@ -426,8 +426,8 @@ void finish_prior_row_here(const ColumnStep& step, const PriorRow& out) {
             });
         for (std::ptrdiff_t k = 0; k < count; ++k) {
             const Bytes above_least = hn::Sub(hn::Load(kBytes, kept + k * kLanes), least);
-            std::uint8_t* const nearest = out.nearest + k * kLanes + lane;
-            hn::Store(hn::Min(above_least, hn::Load(kBytes, nearest)), kBytes, nearest);
+            std::uint8_t* const least_excess = out.least_excess + k * kLanes + lane;
+            hn::Store(hn::Min(above_least, hn::Load(kBytes, least_excess)), kBytes, least_excess);
             hn::Store(shift_right(above_least, out.shift),
                       kBytes,
                       out.costs + cost_at(static_cast<int>(k)) + lane);

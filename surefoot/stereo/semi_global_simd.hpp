@@ -130,10 +130,10 @@ void finish_row(const ColumnStep& step, const WinnerRows& out);
 
 /// Priors that a level passes to the level of twice its size, for one row of 64 columns.
 struct PriorRow {
-    std::uint8_t* costs = nullptr;    ///< disparity `begin`, in groups
-    std::uint8_t* nearest = nullptr;  ///< least difference to the least sum, kLanes bytes per
-                                      ///< disparity from `begin` on; updated
-    std::uint8_t* sums = nullptr;     ///< scratch of (end - begin) * kLanes bytes
+    std::uint8_t* costs = nullptr;         ///< disparity `begin`, in groups
+    std::uint8_t* least_excess = nullptr;  ///< least difference to the least sum, kLanes bytes per
+                                           ///< disparity from `begin` on; updated
+    std::uint8_t* sums = nullptr;          ///< scratch of (end - begin) * kLanes bytes
     int shift = 0;
 };
 /// Runs the last path through the row and writes the priors: (sum - least sum) >> shift.

@@ -484,5 +484,108 @@ TEST(DepthFusion, NothingIsAllocatedWhenHeightsAreAlignedEither) {
     EXPECT_GT(moved, 0);
 }
 
+/// Twice the resolution of zed() in the middle third of the image.
+camera::RectifiedRig fine_part_of_zed() {
+    camera::RectifiedRig rig = zed(1344, 752);
+    rig.cx_px -= 448.0;
+    rig.cy_px -= 250.0;
+    rig.width = 448;
+    rig.height = 250;
+    return rig;
+}
+
+struct TwoHeights {
+    int fine = 0;
+    int coarse = 0;
+};
+
+/// Counts cells at the heights of two scenes of flat ground: the fine one at 0.
+TwoHeights cells_at(const ElevationMap& map, double coarse_m) {
+    TwoHeights cells;
+    for (int iy = 0; iy < map.geometry().ny; ++iy) {
+        for (int ix = 0; ix < map.geometry().nx; ++ix) {
+            const float height_m = map.layers().height_m.at(ix, iy);
+            if (std::isnan(height_m)) continue;
+            const auto z_m = static_cast<double>(height_m);
+            EXPECT_TRUE(std::abs(z_m) < 1e-4 || std::abs(z_m - coarse_m) < 1e-4) << z_m;
+            (std::abs(z_m) < 1e-4 ? cells.fine : cells.coarse) += 1;
+        }
+    }
+    return cells;
+}
+
+TEST(DepthFusion, ACellTakesOneMeasurementOfTheFinestView) {
+    const StepScene floor;
+    constexpr double kOther_m = 0.02;
+    const StepScene higher{-100.0, kOther_m};  // tells both views apart
+    const camera::RectifiedRig fine_rig = fine_part_of_zed();
+    const DepthImage fine = render(floor, fine_rig, body_at(0));
+    const DepthImage coarse = render(higher, zed(), body_at(0));
+    ElevationMap map({});
+    const camera::RectifiedRig coarse_rig = zed();
+    const DepthView views[] = {{fine_rig, fine}, {coarse_rig, coarse}};
+    const FusionCounts counts = map.add(views, body_at(0), 0);
+    EXPECT_EQ(counts.cells_measured, map.known_cells());
+    EXPECT_EQ(counts.cells_new, map.known_cells());
+    const TwoHeights cells = cells_at(map, kOther_m);
+    EXPECT_GT(cells.fine, 800);
+    EXPECT_GT(cells.coarse, 4000);
+    ElevationMap alone({});
+    alone.add(coarse_rig, body_at(0), coarse, 0);
+    EXPECT_LE(std::abs(map.known_cells() - alone.known_cells()), 60)
+        << "the border of the part is known";
+}
+
+TEST(DepthFusion, WhereFineMatchesFailTheCoarserViewCounts) {
+    const StepScene floor;
+    constexpr double kOther_m = 0.02;
+    const StepScene higher{-100.0, kOther_m};
+    const camera::RectifiedRig fine_rig = fine_part_of_zed();
+    DepthImage fine = render(floor, fine_rig, body_at(0));
+    // Two thirds of the fine matches fail.
+    for (std::size_t i = 0; i < fine.disparity_px.size(); ++i)
+        if (i % 3 != 0) fine.disparity_px.data()[i] = kNanF;
+    const camera::RectifiedRig coarse_rig = zed();
+    const DepthImage coarse = render(higher, coarse_rig, body_at(0));
+    ElevationConfig config;
+    config.pixels.surface_check = false;  // it needs the neighbours of a pixel
+    ElevationMap map(config);
+    const DepthView views[] = {{fine_rig, fine}, {coarse_rig, coarse}};
+    map.add(views, body_at(0), 0);
+    ElevationMap alone(config);
+    alone.add(coarse_rig, body_at(0), coarse, 0);
+    const ElevationLayers::Layer& expected_m = alone.layers().height_m;
+    EXPECT_GT(alone.known_cells(), 5000);
+    for (std::size_t i = 0; i < expected_m.size(); ++i) {
+        if (std::isnan(expected_m.data()[i])) continue;
+        EXPECT_EQ(map.layers().height_m.data()[i], expected_m.data()[i]) << i;
+    }
+    // Beyond, the coarse view has too few points for a cell.
+    EXPECT_GT(map.known_cells(), alone.known_cells());
+}
+
+TEST(DepthFusion, AFinerViewIsNewInformationAlsoAtRest) {
+    const StepScene floor;
+    const camera::RectifiedRig fine_rig = fine_part_of_zed();
+    const camera::RectifiedRig coarse_rig = zed();
+    const DepthImage fine = render(floor, fine_rig, body_at(0));
+    const DepthImage coarse = render(floor, coarse_rig, body_at(0));
+    ElevationMap map({});
+    const grid::GridGeometry& geometry = map.geometry();
+    const grid::Cell ahead{geometry.nx / 2 + 64, geometry.ny / 2};  // 1.6 m before the camera
+    const auto var_m2 = [&] { return map.layers().height_var_m2.at(ahead.ix, ahead.iy); };
+    map.add(coarse_rig, body_at(0), coarse, 0);
+    const float first_m2 = var_m2();
+    map.add(coarse_rig, body_at(0), coarse, 1);
+    EXPECT_EQ(var_m2(), first_m2) << "the same errors again";
+    const DepthView views[] = {{fine_rig, fine}, {coarse_rig, coarse}};
+    map.add(views, body_at(0), 2);
+    const float fine_m2 = var_m2();
+    EXPECT_LT(fine_m2, 0.5F * first_m2);
+    for (int i = 3; i < 6; ++i) map.add(views, body_at(0), i);
+    map.add(coarse_rig, body_at(0), coarse, 7);
+    EXPECT_EQ(var_m2(), fine_m2);
+}
+
 }  // namespace
 }  // namespace surefoot::elevation
