@@ -28,6 +28,8 @@ struct RigView {
     std::string name;
     int width = 0;
     int height = 0;
+    int coarse_width = 0;  ///< size at which every frame is matched (pipeline::FineConfig)
+    int coarse_height = 0;
     double focal_px = 0.0;
     double baseline_m = 0.0;
     double disparity_sigma_px = 0.0;  ///< assumed standard deviation of a disparity

@@ -64,9 +64,9 @@ Terms terms_of(const stereo::MatchEvidence& e) {
     const double near =
         std::max(0.0, 1.0 - e.jump_distance_px / static_cast<double>(stereo::kJumpReach_px));
     const double most = static_cast<double>(stereo::kMaxNoisePerPixel_px);
-    const double residual = static_cast<double>(e.residual_grey);
-    const double gradient = static_cast<double>(e.gradient_grey_px);
-    const double noise = gradient > residual / most ? residual / gradient : most;
+    const double noise = stereo::has_texture(e) ? static_cast<double>(e.residual_grey) /
+                                                      static_cast<double>(e.gradient_grey_px)
+                                                : most;
     return {1.0,
             near,
             std::log(noise),
@@ -74,9 +74,13 @@ Terms terms_of(const stereo::MatchEvidence& e) {
             static_cast<double>(e.unknown_share)};
 }
 
+bool is_rated_by_policy(const stereo::MatchEvidence& evidence) {
+    return evidence.nearer_by_px > stereo::kNearSideStep_px || !stereo::has_texture(evidence);
+}
+
 /// True if these terms and the coefficients of the library give the library's probability.
 bool is_the_library(const stereo::MatchEvidence& evidence) {
-    if (evidence.nearer_by_px > stereo::kNearSideStep_px) return true;  // rated by a policy
+    if (is_rated_by_policy(evidence)) return true;
     const Terms c(static_cast<double>(stereo::kScoreConstant),
                   static_cast<double>(stereo::kScoreNearJump),
                   static_cast<double>(stereo::kScoreNoise),
@@ -247,7 +251,7 @@ Result<std::vector<Seen>> see_all(const std::string& data,
 }
 
 /// Fits the logistic function by Newton's method (iteratively reweighted least squares). Matches on
-/// the near side of a jump take no part: a policy rates them.
+/// the near side of a jump and without texture take no part: a policy rates them.
 Terms fitted(const std::vector<Seen>& all) {
     Terms c = Terms::Zero();
     for (int round = 0; round < 30; ++round) {
@@ -260,7 +264,7 @@ Terms fitted(const std::vector<Seen>& all) {
                 (simulated ? 1.0 : kWeightOfReal) /
                 static_cast<double>(std::max<std::size_t>(seen.matches.size(), 1));
             for (const Match& match : seen.matches) {
-                if (match.evidence.nearer_by_px > stereo::kNearSideStep_px) continue;
+                if (is_rated_by_policy(match.evidence)) continue;
                 const Terms x = terms_of(match.evidence);
                 const double p = 1.0 / (1.0 + std::exp(-c.dot(x)));
                 slope += weight * ((match.error_px > 1.0 ? 1.0 : 0.0) - p) * x;

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "surefoot/core/angles.hpp"
 #include "surefoot/core/time.hpp"
@@ -16,6 +16,7 @@ namespace {
 constexpr double kTunedPixels = 672.0 * 376.0;
 constexpr int kMaxScale = 8;
 constexpr double kNearestDepth_m = 0.1;
+constexpr int kSlices = 24;  ///< of the fine region
 /// Smallest side of a fine region. Smaller regions have less support than the matcher needs.
 constexpr int kLeastSide_px = 64;
 // A machine that moves less counts as standing still. Below these limits the map counts errors of
@@ -85,37 +86,46 @@ camera::PixelBox fine_region(const FineConfig& config,
     const double yaw_rad = std::atan2(heading.y(), heading.x());
     const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
     const Eigen::Vector2d left(-ahead.y(), ahead.x());
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    double u_min = kFar;
-    double v_min = kFar;
-    double u_max = -kFar;
-    double v_max = -kFar;
-    bool in_front = false;
-    for (int corner = 0; corner < 8; ++corner) {
-        const double x_m = (corner & 1) != 0 ? config.to_m : config.from_m;
-        const double y_m = (corner & 2) != 0 ? config.half_width_m : -config.half_width_m;
-        const double z_m = (corner & 4) != 0 ? config.height_m : -config.depth_m;
-        const Eigen::Vector2d at_m = body_m.head<2>() + x_m * ahead + y_m * left;
-        Eigen::Vector3d p =
-            T_camera_odom * Eigen::Vector3d(at_m.x(), at_m.y(), body_m.z() - ground_height_m + z_m);
-        in_front |= p.z() > kNearestDepth_m;
-        p.z() = std::max(p.z(), kNearestDepth_m);
-        const double u = rig.fx_px * p.x() / p.z() + rig.cx_px;
-        const double v = rig.fy_px * p.y() / p.z() + rig.cy_px;
-        u_min = std::min(u_min, u);
-        u_max = std::max(u_max, u);
-        v_min = std::min(v_min, v);
-        v_max = std::max(v_max, v);
+    // The region is cut into slices across the heading. Slices below the image would widen the box.
+    struct Slice {
+        Eigen::AlignedBox2d corners_px;
+        bool in_front = false;
+    };
+    const auto slice_at = [&](double x_m) {
+        Slice slice;
+        for (const double y_m : {-config.half_width_m, config.half_width_m}) {
+            for (const double z_m : {-config.depth_m, config.height_m}) {
+                const Eigen::Vector2d at_m = body_m.head<2>() + x_m * ahead + y_m * left;
+                Eigen::Vector3d p =
+                    T_camera_odom *
+                    Eigen::Vector3d(at_m.x(), at_m.y(), body_m.z() - ground_height_m + z_m);
+                slice.in_front |= p.z() > kNearestDepth_m;
+                p.z() = std::max(p.z(), kNearestDepth_m);
+                slice.corners_px.extend(Eigen::Vector2d(rig.fx_px * p.x() / p.z() + rig.cx_px,
+                                                        rig.fy_px * p.y() / p.z() + rig.cy_px));
+            }
+        }
+        return slice;
+    };
+    Eigen::AlignedBox2d region_px;
+    Slice before = slice_at(config.from_m);
+    for (int i = 1; i <= kSlices; ++i) {
+        const Slice here = slice_at(config.from_m + i * (config.to_m - config.from_m) / kSlices);
+        Eigen::AlignedBox2d piece_px = before.corners_px.merged(here.corners_px);
+        if ((before.in_front || here.in_front) && piece_px.min().y() < rig.height &&
+            piece_px.max().y() >= 0.0)
+            region_px.extend(piece_px);
+        before = here;
     }
-    if (!in_front) return {};
+    if (region_px.isEmpty()) return {};
     const auto inside = [](double at, int size) {
         // in range: clamped
         return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(size)));
     };
-    const int u = inside(std::floor(u_min) - left_px, rig.width);
-    const int v = inside(std::floor(v_min), rig.height);
-    const int u_end = inside(std::ceil(u_max) + 1.0, rig.width);
-    const int v_end = inside(std::ceil(v_max) + 1.0, rig.height);
+    const int u = inside(std::floor(region_px.min().x()) - left_px, rig.width);
+    const int v = inside(std::floor(region_px.min().y()), rig.height);
+    const int u_end = inside(std::ceil(region_px.max().x()) + 1.0, rig.width);
+    const int v_end = inside(std::ceil(region_px.max().y()) + 1.0, rig.height);
     if (u_end - u < kLeastSide_px || v_end - v < kLeastSide_px) return {};
     return {u, v, u_end - u, v_end - v};
 }

@@ -25,9 +25,9 @@ struct FineConfig {
     // The fine region: a box in front of base_link, in its heading, on the level of its ground.
     double from_m = 0.4;
     double to_m = 2.5;
-    double half_width_m = 0.8;
-    double depth_m = 0.3;   ///< how far it reaches below the ground: steps down
-    double height_m = 0.3;  ///< and above the ground
+    double half_width_m = 0.6;
+    double depth_m = 0.2;   ///< how far it reaches below the ground: steps down
+    double height_m = 0.2;  ///< and above the ground
     /// The machine stands still after this time without motion. It is then observed finely at once.
     double still_s = 0.2;
 

@@ -12,9 +12,8 @@ namespace {
 /// Returns the ratio of noise to texture slope. It is the error [px] that a single pixel would
 /// have.
 float noise_per_pixel(const MatchEvidence& evidence) noexcept {
-    if (!(evidence.gradient_grey_px > evidence.residual_grey / kMaxNoisePerPixel_px))
-        return kMaxNoisePerPixel_px;
-    return evidence.residual_grey / evidence.gradient_grey_px;
+    return has_texture(evidence) ? evidence.residual_grey / evidence.gradient_grey_px
+                                 : kMaxNoisePerPixel_px;
 }
 
 float nearness_to_jump(const MatchEvidence& evidence) noexcept {
@@ -22,6 +21,10 @@ float nearness_to_jump(const MatchEvidence& evidence) noexcept {
 }
 
 }  // namespace
+
+bool has_texture(const MatchEvidence& evidence) noexcept {
+    return evidence.gradient_grey_px > evidence.residual_grey / kMaxNoisePerPixel_px;
+}
 
 float match_sigma_px(const MatchEvidence& evidence) noexcept {
     const float terms_px[] = {kSigmaFloor_px,
@@ -39,10 +42,11 @@ float outlier_probability(const MatchEvidence& evidence) noexcept {
                         kScoreNoise * std::log(noise_per_pixel(evidence)) +
                         kScoreShift * std::abs(evidence.shift_px) +
                         kScoreUnknown * evidence.unknown_share;
-    const float probability = 1.0F / (1.0F + std::exp(-score));
-    return evidence.nearer_by_px > kNearSideStep_px
-               ? std::max(kNearSideOutlierProbability, probability)
-               : probability;
+    float probability = 1.0F / (1.0F + std::exp(-score));
+    if (evidence.nearer_by_px > kNearSideStep_px)
+        probability = std::max(probability, kNearSideOutlierProbability);
+    if (!has_texture(evidence)) probability = std::max(probability, kNoTextureOutlierProbability);
+    return probability;
 }
 
 void rate_matches(int v,

@@ -45,8 +45,12 @@ inline constexpr float kJumpReach_px = 12.0F;
 inline constexpr float kNearSideStep_px = 2.0F;
 inline constexpr float kNearSideOutlierProbability = 0.5F;
 
-/// Upper limit of the ratio of noise to texture slope, for pixels without texture.
+/// Upper limit of the ratio of noise to texture slope. A match that reaches it has no texture, or
+/// too few matches around it for a refinement. By policy it has at least kNoTextureOutlierProbability:
+/// in a scene without texture, two of three trusted matches were such matches, and half of them
+/// were wrong by more than 2 px (docs/lab/matching.md).
 inline constexpr float kMaxNoisePerPixel_px = 100.0F;
+inline constexpr float kNoTextureOutlierProbability = 0.5F;
 // Rounded result of a logistic regression (lab/trust/main.cpp) on cones, cloth3, three Bumblebee
 // pairs, six frames of garden_walk, and ten scenes of the simulated ZED at one and two times its
 // noise. A real image has the weight of three simulated ones. docs/lab/matching.md has the
@@ -57,8 +61,12 @@ inline constexpr float kScoreNoise = 0.17F;
 inline constexpr float kScoreShift = 0.34F;
 inline constexpr float kScoreUnknown = 3.5F;
 
+/// True if the match has texture in the neighbourhood that the refinement used.
+[[nodiscard]] bool has_texture(const MatchEvidence& evidence) noexcept;
+
 /// Returns the probability that the match is wrong by more than 1 px. It is a logistic function of
-/// the evidence, and at least kNearSideOutlierProbability on the near side of a jump.
+/// the evidence, at least kNearSideOutlierProbability on the near side of a jump, and at least
+/// kNoTextureOutlierProbability without texture.
 [[nodiscard]] float outlier_probability(const MatchEvidence& evidence) noexcept;
 
 /// Fills row `v` of sigma [px] and outlier probability in `depth` from its disparity. Pixels

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/stereo/finisher.hpp"
 #include "surefoot/stereo/stereo_targets_testing.hpp"
 
 namespace surefoot::stereo {
@@ -46,6 +47,39 @@ TEST(OutlierProbability, IsSmallForAGoodMatchAndHighOnTheNearSideOfAJump) {
               0.01F);
     EXPECT_LT(outlier_probability(changed([](auto& e) { e.jump_distance_px = 0; })), 0.1F)
         << "the far side";
+}
+
+TEST(OutlierProbability, IsHighWithoutTexture) {
+    EXPECT_GE(outlier_probability(changed([](auto& e) { e.gradient_grey_px = 0.0F; })),
+              kNoTextureOutlierProbability);
+    EXPECT_GT(kNoTextureOutlierProbability, kTrustedOutlierProbability);
+}
+
+/// The finisher passes the smallest disparity nearby: both sides of the step have the same texture.
+TEST(OutlierProbability, TheFinisherKnowsTheNearSide) {
+    constexpr int kWidth = 120;
+    constexpr int kHeight = 60;
+    constexpr float kFar_px = 4.0F;
+    constexpr float kNear_px = 10.0F;
+    Rng rng(8);
+    GreyImage image(kWidth, kHeight);
+    for (std::size_t i = 0; i < image.size(); ++i)
+        image.data()[i] = static_cast<std::uint8_t>(rng.uniform(0.0, 255.0));
+    Image<float> found_px(kWidth, kHeight, kFar_px);
+    for (int v = 0; v < kHeight; ++v)
+        for (int u = 70; u < kWidth; ++u) found_px.at(u, v) = kNear_px;
+    Serial serial;
+    DepthImage depth;
+    depth.resize(kWidth, kHeight);
+    Finisher().finish(image.view(), image.view(), found_px, Filter::none, serial, depth);
+    int near_side = 0;
+    for (int v = 10; v < kHeight - 10; ++v) {
+        for (int u = 70; u < 72; ++u) {
+            ++near_side;
+            EXPECT_GE(depth.outlier_probability.at(u, v), kNearSideOutlierProbability) << u;
+        }
+    }
+    EXPECT_EQ(near_side, 2 * (kHeight - 20));
 }
 
 TEST(OutlierProbability, GrowsWithEveryWarning) {

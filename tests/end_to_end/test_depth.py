@@ -165,6 +165,26 @@ class Accuracy(CliTest):
             self.assertEqual(process.returncode, 2, wrong)
             self.assertIn("camera.rectified_width_px" if len(wrong) == 1 else "computes rectified depth", process.stderr)
 
+    def test_large_images_are_matched_at_two_sizes(self):
+        run = ["run", "sim:floor", "--rig", "zed_hd720", "--max-frames", 7, "--set", "sim.rate_hz=10", "--out", self.dir / "large"]
+        report = self.json_of(*run)
+        self.assertEqual((report["camera"]["width"], report["camera"]["height"]), (640, 360))
+        self.assertEqual(report["fine"], {"scale": 2, "frames": 2})  # every 0.5 s
+        self.assertGreater(report["map"]["known_cells"], 1000)
+        whole = self.json_of(*run, "--set", "fine.scale=1", "--set", "stereo.disparities=128")
+        self.assertEqual((whole["camera"]["width"], whole["fine"]), (1280, {"scale": 1, "frames": 0}))
+        modelled = self.json_of(*run, "--set", "sim.sensor=analytic")
+        self.assertEqual((modelled["camera"]["width"], modelled["fine"]), (1280, {"scale": 1, "frames": 0}))
+        wrong = surefoot(*run, "--set", "fine.from_m=3")
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("fine.from_m = 3 must be less than fine.to_m = 2.5", wrong.stderr)
+        rig = self.json_of("doctor", "--rig", self.hd720_rig())["rig"]
+        self.assertEqual((rig["width"], rig["coarse_width"], rig["coarse_height"]), (1280, 640, 360))
+
+    def hd720_rig(self):
+        self.json_of("sim", "floor", "--rig", "zed_hd720", "--frames", 1, "--out", self.dir / "hd720")
+        return self.dir / "hd720"
+
     def test_real_images_with_their_distances(self):
         # A wall at 41.04 / 20 m: the whole image moves by 20 px.
         rows = speckle(672, 376)
