@@ -2,8 +2,10 @@
 #include "lab/stereo_pairs/match_evidence.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lab/stereo_pairs/rival_matchers.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stereo/finisher.hpp"
 #include "surefoot/stereo/refine.hpp"
 
@@ -43,6 +45,22 @@ stereo::MatchEvidence PairEvidence::at(int u, int v) const {
             jump_distance_px.at(u, v),
             static_cast<float>(unknown.pixels.at(u, v)) / static_cast<float>(area),
             disparity_px.at(u, v) - smallest_px.at(u, v)};
+}
+
+Image<float> PairEvidence::outlier_probability() const {
+    DepthImage depth;
+    depth.disparity_px = disparity_px;
+    depth.sigma_px = Image<float>(disparity_px.width(), disparity_px.height(), kNanF);
+    depth.outlier_probability = Image<float>(disparity_px.width(), disparity_px.height(), 1.0F);
+    for (int v = 0; v < disparity_px.height(); ++v) {
+        for (int u = 0; u < disparity_px.width(); ++u) {
+            if (std::isnan(disparity_px.at(u, v))) continue;
+            depth.sigma_px.at(u, v) = stereo::match_sigma_px(at(u, v));
+            depth.outlier_probability.at(u, v) = stereo::outlier_probability(at(u, v));
+        }
+    }
+    stereo::IsolatedMatches().doubt(depth);
+    return depth.outlier_probability;
 }
 
 }  // namespace surefoot::experiments

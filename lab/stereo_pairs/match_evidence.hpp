@@ -12,6 +12,8 @@ namespace surefoot::experiments {
 struct PairEvidence {
     explicit PairEvidence(const TruePair& pair);
     [[nodiscard]] stereo::MatchEvidence at(int u, int v) const;
+    /// Outlier probability of every pixel, as the matcher states it.
+    [[nodiscard]] Image<float> outlier_probability() const;
 
     Image<float> disparity_px;  ///< NaN = unknown
     Image<float> residual_grey, gradient_grey_px, shift_px, smallest_px;

@@ -51,6 +51,8 @@ using Terms = Eigen::Matrix<double, 5, 1>;  ///< 1, near jump, log noise, shift,
 struct Match {
     stereo::MatchEvidence evidence;
     double error_px = 0.0;
+    float probability = 0.0F;  ///< stated outlier probability
+    bool isolated = false;     ///< see stereo::IsolatedMatches
 };
 
 struct Seen {
@@ -64,9 +66,9 @@ Terms terms_of(const stereo::MatchEvidence& e) {
     const double near =
         std::max(0.0, 1.0 - e.jump_distance_px / static_cast<double>(stereo::kJumpReach_px));
     const double most = static_cast<double>(stereo::kMaxNoisePerPixel_px);
-    const double noise = stereo::has_texture(e) ? static_cast<double>(e.residual_grey) /
-                                                      static_cast<double>(e.gradient_grey_px)
-                                                : most;
+    const double residual = static_cast<double>(e.residual_grey);
+    const double gradient = static_cast<double>(e.gradient_grey_px);
+    const double noise = gradient > residual / most ? residual / gradient : most;
     return {1.0,
             near,
             std::log(noise),
@@ -74,13 +76,9 @@ Terms terms_of(const stereo::MatchEvidence& e) {
             static_cast<double>(e.unknown_share)};
 }
 
-bool is_rated_by_policy(const stereo::MatchEvidence& evidence) {
-    return evidence.nearer_by_px > stereo::kNearSideStep_px || !stereo::has_texture(evidence);
-}
-
 /// True if these terms and the coefficients of the library give the library's probability.
 bool is_the_library(const stereo::MatchEvidence& evidence) {
-    if (is_rated_by_policy(evidence)) return true;
+    if (evidence.nearer_by_px > stereo::kNearSideStep_px) return true;  // rated by a policy
     const Terms c(static_cast<double>(stereo::kScoreConstant),
                   static_cast<double>(stereo::kScoreNearJump),
                   static_cast<double>(stereo::kScoreNoise),
@@ -92,6 +90,7 @@ bool is_the_library(const stereo::MatchEvidence& evidence) {
 
 Result<Seen> see(const TruePair& pair, std::string kind, bool fits) {
     const PairEvidence evidence(pair);
+    const Image<float> probability = evidence.outlier_probability();
     Seen seen{pair.name, std::move(kind), fits, {}};
     int count = 0;
     for (int v = 0; v < pair.truth_px.height(); ++v) {
@@ -101,7 +100,11 @@ Result<Seen> see(const TruePair& pair, std::string kind, bool fits) {
             if (!is_the_library(evidence.at(u, v)))
                 return input_error(
                     "outlier_probability has changed; update terms_of in lab/trust/main.cpp");
-            seen.matches.push_back({evidence.at(u, v), std::abs(static_cast<double>(error_px))});
+            const float alone = stereo::outlier_probability(evidence.at(u, v));
+            seen.matches.push_back({evidence.at(u, v),
+                                    std::abs(static_cast<double>(error_px)),
+                                    probability.at(u, v),
+                                    probability.at(u, v) > alone});
         }
     }
     return seen;
@@ -251,7 +254,7 @@ Result<std::vector<Seen>> see_all(const std::string& data,
 }
 
 /// Fits the logistic function by Newton's method (iteratively reweighted least squares). Matches on
-/// the near side of a jump and without texture take no part: a policy rates them.
+/// the near side of a jump and isolated matches take no part: a policy rates them.
 Terms fitted(const std::vector<Seen>& all) {
     Terms c = Terms::Zero();
     for (int round = 0; round < 30; ++round) {
@@ -264,7 +267,8 @@ Terms fitted(const std::vector<Seen>& all) {
                 (simulated ? 1.0 : kWeightOfReal) /
                 static_cast<double>(std::max<std::size_t>(seen.matches.size(), 1));
             for (const Match& match : seen.matches) {
-                if (is_rated_by_policy(match.evidence)) continue;
+                if (match.evidence.nearer_by_px > stereo::kNearSideStep_px || match.isolated)
+                    continue;
                 const Terms x = terms_of(match.evidence);
                 const double p = 1.0 / (1.0 + std::exp(-c.dot(x)));
                 slope += weight * ((match.error_px > 1.0 ? 1.0 : 0.0) - p) * x;
@@ -282,8 +286,7 @@ void report(const std::string& folder, const std::vector<Seen>& all) {
     for (const Seen& seen : all) {
         double right = 0.0, kept = 0.0, wrong = 0.0, trusted = 0.0, wrong_trusted = 0.0;
         for (const Match& match : seen.matches) {
-            const bool trusts =
-                stereo::outlier_probability(match.evidence) <= kTrustedOutlierProbability;
+            const bool trusts = match.probability <= kTrustedOutlierProbability;
             right += match.error_px <= 1.0 ? 1.0 : 0.0;
             kept += match.error_px <= 1.0 && trusts ? 1.0 : 0.0;
             wrong += match.error_px > 2.0 ? 1.0 : 0.0;
@@ -320,7 +323,7 @@ void report_reliability(const std::string& folder, const std::vector<Seen>& all)
         for (const Seen& seen : all) {
             if (seen.kind != kind || seen.fits != fits) continue;
             for (const Match& match : seen.matches) {
-                const auto p = static_cast<double>(stereo::outlier_probability(match.evidence));
+                const auto p = static_cast<double>(match.probability);
                 const auto above = std::upper_bound(kBins.begin() + 1, kBins.end() - 1, p);
                 Bin& bin = bins[static_cast<std::size_t>(above - kBins.begin() - 1)];
                 bin.stated += p;

@@ -12,8 +12,9 @@ namespace {
 /// Returns the ratio of noise to texture slope. It is the error [px] that a single pixel would
 /// have.
 float noise_per_pixel(const MatchEvidence& evidence) noexcept {
-    return has_texture(evidence) ? evidence.residual_grey / evidence.gradient_grey_px
-                                 : kMaxNoisePerPixel_px;
+    if (!(evidence.gradient_grey_px > evidence.residual_grey / kMaxNoisePerPixel_px))
+        return kMaxNoisePerPixel_px;
+    return evidence.residual_grey / evidence.gradient_grey_px;
 }
 
 float nearness_to_jump(const MatchEvidence& evidence) noexcept {
@@ -21,10 +22,6 @@ float nearness_to_jump(const MatchEvidence& evidence) noexcept {
 }
 
 }  // namespace
-
-bool has_texture(const MatchEvidence& evidence) noexcept {
-    return evidence.gradient_grey_px > evidence.residual_grey / kMaxNoisePerPixel_px;
-}
 
 float match_sigma_px(const MatchEvidence& evidence) noexcept {
     const float terms_px[] = {kSigmaFloor_px,
@@ -42,11 +39,51 @@ float outlier_probability(const MatchEvidence& evidence) noexcept {
                         kScoreNoise * std::log(noise_per_pixel(evidence)) +
                         kScoreShift * std::abs(evidence.shift_px) +
                         kScoreUnknown * evidence.unknown_share;
-    float probability = 1.0F / (1.0F + std::exp(-score));
-    if (evidence.nearer_by_px > kNearSideStep_px)
-        probability = std::max(probability, kNearSideOutlierProbability);
-    if (!has_texture(evidence)) probability = std::max(probability, kNoTextureOutlierProbability);
-    return probability;
+    const float probability = 1.0F / (1.0F + std::exp(-score));
+    return evidence.nearer_by_px > kNearSideStep_px
+               ? std::max(kNearSideOutlierProbability, probability)
+               : probability;
+}
+
+void IsolatedMatches::doubt(DepthImage& depth) {
+    constexpr int kSide = kIsolationBlock_px;
+    const int width = depth.disparity_px.width();
+    const int height = depth.disparity_px.height();
+    const int columns = (width + kSide - 1) / kSide;
+    const int rows = (height + kSide - 1) / kSide;
+    matched_.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
+    const auto block_at = [&](int x, int y) -> int& {
+        return matched_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                        static_cast<std::size_t>(x)];
+    };
+    for (int v = 0; v < height; ++v) {
+        const float* const disparity_px = depth.disparity_px.row(v);
+        for (int x = 0; x < columns; ++x) {
+            int matched = 0;
+            for (int u = x * kSide; u < std::min(width, (x + 1) * kSide); ++u)
+                matched += disparity_px[u] == disparity_px[u] ? 1 : 0;
+            block_at(x, v / kSide) += matched;
+        }
+    }
+    for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+            int matched = 0;
+            for (int j = std::max(0, y - 1); j <= std::min(rows - 1, y + 1); ++j)
+                for (int i = std::max(0, x - 1); i <= std::min(columns - 1, x + 1); ++i)
+                    matched += block_at(i, j);
+            const int area = (std::min(width, (x + 2) * kSide) - std::max(0, (x - 1) * kSide)) *
+                             (std::min(height, (y + 2) * kSide) - std::max(0, (y - 1) * kSide));
+            if (matched >= kLeastMatchedShare * area) continue;
+            for (int v = y * kSide; v < std::min(height, (y + 1) * kSide); ++v) {
+                float* const probability = depth.outlier_probability.row(v);
+                const float* const sigma_px = depth.sigma_px.row(v);
+                for (int u = x * kSide; u < std::min(width, (x + 1) * kSide); ++u) {
+                    if (sigma_px[u] >= kMaxSigma_px)
+                        probability[u] = std::max(probability[u], kIsolatedOutlierProbability);
+                }
+            }
+        }
+    }
 }
 
 void rate_matches(int v,

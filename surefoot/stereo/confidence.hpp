@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "surefoot/core/depth_image.hpp"
 #include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/refine.hpp"
@@ -45,12 +47,8 @@ inline constexpr float kJumpReach_px = 12.0F;
 inline constexpr float kNearSideStep_px = 2.0F;
 inline constexpr float kNearSideOutlierProbability = 0.5F;
 
-/// Upper limit of the ratio of noise to texture slope. A match that reaches it has no texture, or
-/// too few matches around it for a refinement. By policy it has at least kNoTextureOutlierProbability:
-/// in a scene without texture, two of three trusted matches were such matches, and half of them
-/// were wrong by more than 2 px (docs/lab/matching.md).
+/// Upper limit of the ratio of noise to texture slope, for pixels without texture.
 inline constexpr float kMaxNoisePerPixel_px = 100.0F;
-inline constexpr float kNoTextureOutlierProbability = 0.5F;
 // Rounded result of a logistic regression (lab/trust/main.cpp) on cones, cloth3, three Bumblebee
 // pairs, six frames of garden_walk, and ten scenes of the simulated ZED at one and two times its
 // noise. A real image has the weight of three simulated ones. docs/lab/matching.md has the
@@ -61,13 +59,30 @@ inline constexpr float kScoreNoise = 0.17F;
 inline constexpr float kScoreShift = 0.34F;
 inline constexpr float kScoreUnknown = 3.5F;
 
-/// True if the match has texture in the neighbourhood that the refinement used.
-[[nodiscard]] bool has_texture(const MatchEvidence& evidence) noexcept;
-
 /// Returns the probability that the match is wrong by more than 1 px. It is a logistic function of
-/// the evidence, at least kNearSideOutlierProbability on the near side of a jump, and at least
-/// kNoTextureOutlierProbability without texture.
+/// the evidence, and at least kNearSideOutlierProbability on the near side of a jump.
 [[nodiscard]] float outlier_probability(const MatchEvidence& evidence) noexcept;
+
+/// Where most pixels have no match, a match with the largest sigma (no texture, or too few matches
+/// around it for a refinement) has at least this probability. In a scene without texture, two of
+/// three trusted matches were such matches, and half of them were wrong by more than 2 px
+/// (docs/lab/matching.md).
+inline constexpr float kIsolatedOutlierProbability = 0.5F;
+/// A block is the square of pixels that are judged together, by the matches of 3 x 3 blocks.
+inline constexpr int kIsolationBlock_px = 32;
+/// Smallest share of matched pixels in 3 x 3 blocks whose matches are not isolated. Chosen on the
+/// images of the fit and on look_white_wall with seeds 21-22.
+inline constexpr double kLeastMatchedShare = 0.5;
+
+/// Raises the outlier probability of isolated matches. Keeps its memory between images.
+class IsolatedMatches {
+  public:
+    /// `depth` must hold disparity, sigma and outlier probability of every pixel.
+    void doubt(DepthImage& depth);
+
+  private:
+    std::vector<int> matched_;  ///< number of matched pixels of each block
+};
 
 /// Fills row `v` of sigma [px] and outlier probability in `depth` from its disparity. Pixels
 /// without disparity get sigma NaN and probability 1. `smallest_px`: see smallest_nearby.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -49,10 +50,46 @@ TEST(OutlierProbability, IsSmallForAGoodMatchAndHighOnTheNearSideOfAJump) {
         << "the far side";
 }
 
-TEST(OutlierProbability, IsHighWithoutTexture) {
-    EXPECT_GE(outlier_probability(changed([](auto& e) { e.gradient_grey_px = 0.0F; })),
-              kNoTextureOutlierProbability);
-    EXPECT_GT(kNoTextureOutlierProbability, kTrustedOutlierProbability);
+/// An image in which a share of the rows is matched.
+DepthImage matched_rows(int width, int height, int of_ten) {
+    DepthImage depth;
+    depth.resize(width, height);
+    depth.sigma_px.fill(kMaxSigma_px);
+    depth.outlier_probability.fill(0.01F);
+    for (int v = 0; v < height; ++v)
+        std::fill_n(depth.disparity_px.row(v),
+                    width,
+                    v % 10 < of_ten ? 12.0F : std::numeric_limits<float>::quiet_NaN());
+    return depth;
+}
+
+TEST(IsolatedMatches, AreDoubtedIfMostPixelsAroundHaveNoMatch) {
+    IsolatedMatches isolated;
+    for (const int side : {100, 37, 8}) {
+        for (int of_ten = 1; of_ten <= 10; ++of_ten) {
+            DepthImage depth = matched_rows(side + 3, side, of_ten);
+            depth.sigma_px.at(1, 0) = 0.5F * kMaxSigma_px;  // with texture
+            isolated.doubt(depth);
+            EXPECT_EQ(depth.outlier_probability.at(1, 0), 0.01F);
+            if (of_ten > 3 && of_ten < 7) continue;  // blocks hold no whole number of ten rows
+            EXPECT_EQ(depth.outlier_probability.at(side - 1, side / 20 * 10),
+                      of_ten <= 3 ? kIsolatedOutlierProbability : 0.01F)
+                << side << " " << of_ten;
+        }
+    }
+    EXPECT_GT(kIsolatedOutlierProbability, kTrustedOutlierProbability);
+}
+
+/// Matches at a distance of 3 x 3 blocks do not count.
+TEST(IsolatedMatches, AreJudgedByTheirNeighbourhood) {
+    DepthImage depth = matched_rows(400, 100, 10);
+    for (int v = 0; v < 100; ++v)
+        for (int u = 160; u < 400; ++u)
+            if (u < 300 || u >= 310)
+                depth.disparity_px.at(u, v) = std::numeric_limits<float>::quiet_NaN();
+    IsolatedMatches().doubt(depth);
+    EXPECT_EQ(depth.outlier_probability.at(40, 50), 0.01F);
+    EXPECT_EQ(depth.outlier_probability.at(305, 50), kIsolatedOutlierProbability);
 }
 
 /// The finisher passes the smallest disparity nearby: both sides of the step have the same texture.

@@ -26,6 +26,7 @@ void Finisher::finish(ImageView<const std::uint8_t> left,
                     [&](int v, const RefinedRow& refined) {
                         rate_matches(v, refined, jump_distance_px_, unknown_, smallest_px_, depth);
                     });
+    isolated_.doubt(depth);
 }
 
 }  // namespace surefoot::stereo

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "surefoot/core/depth_image.hpp"
+#include "surefoot/stereo/confidence.hpp"
 #include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/refine.hpp"
 
@@ -35,6 +36,7 @@ class Finisher {
     Image<std::uint8_t> jump_distance_px_;
     Image<float> smallest_px_;
     UnknownCounts unknown_;
+    IsolatedMatches isolated_;
 };
 
 }  // namespace surefoot::stereo

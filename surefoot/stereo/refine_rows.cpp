@@ -342,19 +342,12 @@ HWY_INLINE hn::Vec<D> exp_of(D d, hn::Vec<D> x) {
 // The formulae of confidence.cpp, in two loops. In a single loop each step would wait for too many
 // earlier steps.
 
-/// Vector version of has_texture().
-template <class D>
-HWY_INLINE hn::Mask<D> textured_here(D d, const RateRow& row, int u) {
-    constexpr Divisor kMaxNoise(static_cast<int>(kMaxNoisePerPixel_px));  // in range: constant
-    return hn::Gt(hn::LoadU(d, row.gradient_grey_px + u),
-                  divide(d, kMaxNoise, hn::LoadU(d, row.residual_grey + u)));
-}
-
 /// Computes sigma and score of the lanes from `u` on. The windows in which unknown pixels are
 /// counted have `area` pixels. The score is stored in place of the probability.
 template <class D>
 HWY_INLINE void score_here(D d, const RateRow& row, const Divisor& area, int u) {
-    constexpr Divisor kReach_px(static_cast<int>(kJumpReach_px));  // in range: constant
+    constexpr Divisor kReach_px(static_cast<int>(kJumpReach_px));         // in range: constants
+    constexpr Divisor kMaxNoise(static_cast<int>(kMaxNoisePerPixel_px));  // in range: constants
     const hn::RebindToSigned<D> d32;
     const hn::Rebind<std::uint8_t, D> d8;
     const auto set = [d](float value) { return hn::Set(d, value); };
@@ -369,7 +362,7 @@ HWY_INLINE void score_here(D d, const RateRow& row, const Divisor& area, int u) 
     const auto gradient = hn::LoadU(d, row.gradient_grey_px + u);
     const auto shift = hn::LoadU(d, row.shift_px + u);
 
-    const auto textured = textured_here(d, row, u);
+    const auto textured = hn::Gt(gradient, divide(d, kMaxNoise, residual));
     const auto noise =
         hn::IfThenElse(textured,
                        hn::Div(residual, hn::IfThenElse(textured, gradient, set(1.0F))),
@@ -399,12 +392,8 @@ HWY_INLINE void weigh_here(D d, const RateRow& row, int u) {
     const auto chance = hn::Div(one, hn::Add(one, exp_of(d, hn::Neg(score))));
     const auto disparity = hn::LoadU(d, row.disparity_px + u);
     const auto nearer_by_px = hn::Sub(disparity, hn::LoadU(d, row.smallest_px + u));
-    const auto near_side = hn::IfThenElseZero(hn::Gt(nearer_by_px, hn::Set(d, kNearSideStep_px)),
-                                              hn::Set(d, kNearSideOutlierProbability));
-    const auto least = hn::Max(near_side,
-                               hn::IfThenElse(textured_here(d, row, u),
-                                              hn::Zero(d),
-                                              hn::Set(d, kNoTextureOutlierProbability)));
+    const auto least = hn::IfThenElseZero(hn::Gt(nearer_by_px, hn::Set(d, kNearSideStep_px)),
+                                          hn::Set(d, kNearSideOutlierProbability));
     const auto known = hn::Eq(disparity, disparity);
     hn::StoreU(hn::IfThenElse(known, hn::Max(chance, least), one), d, row.outlier_probability + u);
 }
