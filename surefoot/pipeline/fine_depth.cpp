@@ -80,6 +80,7 @@ camera::PixelBox fine_region(const FineConfig& config,
                              const Pose& T_odom_body,
                              double ground_height_m,
                              int left_px) {
+    if (!T_odom_body.all_finite()) return {};
     const Pose T_camera_odom = (T_odom_body * rig.T_body_camera).inverse();
     const Eigen::Vector3d body_m = T_odom_body.translation_m;
     const Eigen::Vector2d heading = T_odom_body.R().col(0).head<2>();

@@ -109,6 +109,9 @@ TEST(FineRegion, LeavesOutTheRestOfTheImage) {
 TEST(FineRegion, IsEmptyIfTheCameraDoesNotShowIt) {
     const Pose T_odom_body{Eigen::Quaterniond::Identity(), {0.0, 0.0, 1.0}};
     EXPECT_EQ(fine_region({}, rig_looking_down(-60.0), T_odom_body, 1.0, 0), camera::PixelBox{});
+    Pose broken = T_odom_body;
+    broken.translation_m.z() = static_cast<double>(kNanF);
+    EXPECT_EQ(fine_region({}, rig_looking_down(30.0), broken, 1.0, 0), camera::PixelBox{});
     FineConfig behind;
     behind.from_m = -3.0;
     behind.to_m = -2.0;

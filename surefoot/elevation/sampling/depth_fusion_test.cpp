@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/allocations_testing.hpp"
+#include "surefoot/core/executors_testing.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/unknown.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
@@ -563,6 +564,40 @@ TEST(DepthFusion, WhereFineMatchesFailTheCoarserViewCounts) {
     }
     // At the border of the image the coarse view has few points in a cell, too.
     EXPECT_LE(others, 3);
+}
+
+TEST(DepthFusion, TwoViewsAllocateNothingAndDoNotDependOnTheExecutor) {
+    const camera::RectifiedRig fine_rig = fine_part_of_zed();
+    const camera::RectifiedRig coarse_rig = zed();
+    const DepthImage fine = render({1.2, 0.1}, fine_rig, body_at(0));
+    const DepthImage coarse = render({1.2, 0.1}, coarse_rig, body_at(0));
+    for (const bool aligns : {false, true}) {
+        ElevationConfig config;
+        config.height_drift.enabled = aligns;
+        ElevationMap map(config);
+        const auto frame = [&](int k) {
+            map.follow(body_at(0.011 * k), Matrix6::Identity() * 1e-8);
+            const DepthView views[] = {{fine_rig, fine}, {coarse_rig, coarse}};
+            // Every second frame has a fine part.
+            map.add(std::span(views).subspan(k % 2 == 0 ? 0 : 1), body_at(0.011 * k), k);
+        };
+        for (int k = 0; k < 4; ++k) frame(k);
+        const std::int64_t before = heap::allocations;
+        for (int k = 4; k < 12; ++k) frame(k);
+        EXPECT_EQ(heap::allocations - before, 0);
+
+        ElevationMap serial_map(config);
+        ElevationMap other_map(config);
+        Backwards reversed;
+        const DepthView views[] = {{fine_rig, fine}, {coarse_rig, coarse}};
+        serial_map.add(views, body_at(0), 0);
+        other_map.add(views, body_at(0), 0, reversed);
+        for (std::size_t i = 0; i < serial_map.layers().height_m.size(); ++i) {
+            const float a_m = serial_map.layers().height_m.data()[i];
+            const float b_m = other_map.layers().height_m.data()[i];
+            ASSERT_TRUE(a_m == b_m || (std::isnan(a_m) && std::isnan(b_m))) << i;
+        }
+    }
 }
 
 TEST(DepthFusion, AFinerViewIsNewInformationAlsoAtRest) {
