@@ -82,18 +82,21 @@ void print(const RigView& view) {
                view.focal_px,
                1e3 * view.baseline_m);
     if (view.coarse_width < view.width) {
+        const pipeline::FineConfig fine;
         fmt::print(
-            "two rates: every frame is matched at {}x{} px, and the ground 0.4 to 2.5 m ahead also "
-            "at {}x{} px, twice a second (settings fine.*)\n",
+            "two rates: every frame is matched at {}x{} px, and the ground {:g} to {:g} m ahead "
+            "also at {}x{} px, every {:g} s (settings fine.*)\n",
             view.coarse_width,
             view.coarse_height,
+            fine.from_m,
+            fine.to_m,
             view.width,
-            view.height);
+            view.height,
+            fine.every_s);
     } else {
         fmt::print(
-            "one rate: every frame is matched at full size. If the camera has a mode of about "
-            "1280x720 px, use it: depth of the ground ahead becomes more precise at nearly the "
-            "same frame rate\n");
+            "one rate: every frame is matched at full size. If a stereo camera has a mode of about "
+            "1280x720 px, this mode makes the depth of the ground ahead more precise\n");
     }
     fmt::print(
         "standard deviation of depth on well textured ground (standard deviation of a disparity "

@@ -47,12 +47,12 @@ eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Traject
 /// Resamples the exact depth of a raw left image without distortion for the rectified camera. This
 /// camera is slightly rotated if the rig differs from the rig of the scene. The depth is along the
 /// optical axis of the rectified camera and comes from the nearest raw pixel. Empty for another
-/// lens model, or if the images differ in size.
+/// lens model. The rectified images may be smaller than the raw ones.
 Image<float> seen_by(const camera::RectifiedRig& rig,
                      const camera::StereoRig& raw_rig,
                      const Image<float>& raw_m) {
     const auto* lens = std::get_if<camera::PinholeRadTan>(&raw_rig.left.model);
-    if (lens == nullptr || rig.width != raw_m.width() || rig.height != raw_m.height()) return {};
+    if (lens == nullptr || raw_m.empty()) return {};
     const Eigen::Matrix3d R_raw_rectified =
         (raw_rig.body_from_left().inverse() * rig.T_body_camera).R();
     Image<float> seen_m(rig.width, rig.height, std::nanf(""));

@@ -315,13 +315,13 @@ void ElevationCells::agree(std::size_t cell,
                            const CellObservation& seen,
                            const FrameObservation& look) {
     const CellMeasurement& measured = seen.measured;
-    if (is_news(cell, seen, look)) {
+    if (look.views.is_new_since(viewpoint_.data()[cell] & ~kFineView)) {
         layers_.height_m.data()[cell] = static_cast<float>(fused.z_m);
         layers_.height_var_m2.data()[cell] = static_cast<float>(fused.var_m2);
         settled_var_m2_.data()[cell] = static_cast<float>(fused.var_m2);
         viewpoint_.data()[cell] = observed_from(seen, look);
     } else {
-        repeat(cell, measured, look);
+        repeat(cell, seen, look);
     }
     align(cell);
     ++layers_.count.data()[cell];
@@ -359,28 +359,26 @@ void ElevationCells::remember_density(std::size_t cell, float ratio) {
         std::isnan(remembered) ? ratio : remembered + kNewObservation * (ratio - remembered);
 }
 
-bool ElevationCells::is_news(std::size_t cell,
-                             const CellObservation& seen,
-                             const FrameObservation& look) const {
-    const ViewpointHistory::Id viewpoint = viewpoint_.data()[cell];
-    return look.views.is_new_since(viewpoint & ~kFineView) ||
-           (seen.is_fine && (viewpoint & kFineView) == 0);
-}
-
 void ElevationCells::repeat(std::size_t cell,
-                            const CellMeasurement& measured,
+                            const CellObservation& seen,
                             const FrameObservation& look) {
     // The cell and the measurement share an unknown part of their errors. Covariance intersection
     // (Julier and Uhlmann 1997) in one dimension keeps the estimate of smaller variance unchanged.
+    // Of many equal observations the one with the smallest variance is not better than the others,
+    // but the first fine observation after coarse ones is.
     float& var_m2 = layers_.height_var_m2.data()[cell];
     float& settled_m2 = settled_var_m2_.data()[cell];
-    const float measured_m2 = std::max(measured.var_m2, settled_m2);
+    ViewpointHistory::Id& viewpoint = viewpoint_.data()[cell];
+    const bool is_first_fine = seen.is_fine && (viewpoint & kFineView) == 0;
+    const float measured_m2 =
+        is_first_fine
+            ? std::max(seen.measured.var_m2, static_cast<float>(config_.fusion.min_height_var_m2))
+            : std::max(seen.measured.var_m2, settled_m2);
     if (var_m2 <= measured_m2) return;
-    layers_.height_m.data()[cell] = measured.z_m;
+    layers_.height_m.data()[cell] = seen.measured.z_m;
     var_m2 = measured_m2;
     settled_m2 = measured_m2;
-    ViewpointHistory::Id& viewpoint = viewpoint_.data()[cell];
-    viewpoint = look.view | (viewpoint & kFineView);
+    viewpoint = observed_from(seen, look) | (viewpoint & kFineView);
 }
 
 }  // namespace surefoot::elevation

@@ -28,8 +28,8 @@ struct CellObservation {
     /// Lower end of the observed surface. A face seen from the side reaches down to its lowest
     /// points; every other surface begins at its height.
     float bottom_m = 0.0F;
-    /// True if the cell was matched in a larger image than the others of the frame. The errors of
-    /// such a match are new information, even from a viewpoint of coarse matches. ASSUMPTION.
+    /// True if the cell was matched in a larger image than the others of the frame. From a known
+    /// viewpoint such a match replaces coarse ones if its variance is smaller.
     bool is_fine = false;
 };
 
@@ -108,10 +108,7 @@ class ElevationCells {
                const Height& fused,
                const CellObservation& seen,
                const FrameObservation& look);
-    void repeat(std::size_t cell, const CellMeasurement& measured, const FrameObservation& look);
-    [[nodiscard]] bool is_news(std::size_t cell,
-                               const CellObservation& seen,
-                               const FrameObservation& look) const;
+    void repeat(std::size_t cell, const CellObservation& seen, const FrameObservation& look);
     void set_confidence(std::size_t cell, float confidence);
     void remember_density(std::size_t cell, float ratio);
     /// Returns the trust that the present height gets when it becomes an overhead object.

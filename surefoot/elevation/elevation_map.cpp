@@ -118,6 +118,8 @@ FusionCounts ElevationMap::add(std::span<const DepthView> views,
             sample_points(samples, counts);
         }
         samples.expected.emplace(rig, T_odom_body, geometry());
+        const double ratio = rig.fx_px / views.back().rig.fx_px;
+        samples.pixel_ratio = static_cast<float>(ratio * ratio);
     }
     const camera::RectifiedRig& rig = views.back().rig;
     const Eigen::Vector3d camera_m = (T_odom_body * rig.T_body_camera).translation_m;
@@ -303,16 +305,37 @@ std::size_t ElevationMap::best_view(int ix, int iy) const {
         static_cast<std::size_t>(RowBlocks::of_row(iy)) * static_cast<std::size_t>(geometry().nx) +
         static_cast<std::size_t>(ix);
     std::size_t best = view_count_ - 1;
-    float best_density = 0.0F;  // 0 if the view measures nothing
-    for (std::size_t i = view_count_; i-- > 0;) {
-        const CellMeasurement& measured = samples_[i].measured[at];
-        if (!says_something(measured) || reaches_out(samples_[i], ix, iy, measured)) continue;
-        const float density = density_ratio(samples_[i], ix, iy, measured.z_m);
-        if (density < kLeastShareOfCoarser * best_density) continue;
-        best = i;
-        best_density = density;
+    for (std::size_t i = view_count_ - 1; i-- > 0;) {
+        if (is_better(samples_[i],
+                      samples_[i].measured[at],
+                      samples_[best],
+                      samples_[best].measured[at],
+                      ix,
+                      iy))
+            best = i;
     }
     return best;
+}
+
+bool ElevationMap::is_better(const Samples& fine,
+                             const CellMeasurement& finer,
+                             const Samples& coarse,
+                             const CellMeasurement& coarser,
+                             int ix,
+                             int iy) const {
+    // A larger image has more pixels of the same surface in a cell.
+    const float enough = fine.pixel_ratio * static_cast<float>(config_.reduction.min_points);
+    if (!says_something(finer) || static_cast<float>(points_of(fine, ix, iy)) < enough)
+        return false;
+    if (!says_something(coarser)) return !reaches_out(fine, ix, iy, finer);
+    // Above the part that is matched finely, only the coarser view shows an object.
+    if (!fine.expected->is_whole_in_view(ix, iy, std::max(finer.z_m, coarser.highest_m)))
+        return false;
+    const auto sigmas = static_cast<float>(config_.fusion.gate_sigma);
+    if (coarser.z_m - finer.z_m > sigmas * std::sqrt(coarser.var_m2 + finer.var_m2)) return false;
+    // NaN, the density of surfaces above the camera, is not enough.
+    return density_ratio(fine, ix, iy, finer.z_m) >=
+           kLeastShareOfCoarser * density_ratio(coarse, ix, iy, coarser.z_m);
 }
 
 float ElevationMap::density_ratio(const Samples& samples, int ix, int iy, float z_m) const {

@@ -66,8 +66,8 @@ class ElevationMap {
                      std::int64_t time_ns,
                      Executor& executor = serial());
     /// Fuses depth images of one instant: parts in which a finer image was matched, finest first,
-    /// then the whole image. Each cell takes the measurement of the first view that has at least
-    /// kLeastShareOfCoarser of the point density of every later view.
+    /// then the whole image. Each cell takes one measurement: that of the finest view that is
+    /// better (see `is_better`), else that of the whole image.
     /// At most kMostViews views.
     FusionCounts add(std::span<const DepthView> views,
                      const Pose& T_odom_body,
@@ -113,6 +113,8 @@ class ElevationMap {
         CellSamples of_image;
         CellGroups groups;
         std::optional<ExpectedPoints> expected;  ///< empty for clouds
+        /// Number of pixels of a surface in this view per pixel in the last (coarsest) view.
+        float pixel_ratio = 1.0F;
         /// One row per block; used if a frame has more than one view.
         std::vector<CellMeasurement> measured;
     };
@@ -133,6 +135,15 @@ class ElevationMap {
     void reduce_row(int iy);
     /// Returns the view whose measurement the cell takes.
     [[nodiscard]] std::size_t best_view(int ix, int iy) const;
+    /// True if the cell should take the measurement of the finer view. False if the coarser view
+    /// measures a higher surface, or one that reaches out of the finer view, or if the finer view
+    /// has too few points.
+    [[nodiscard]] bool is_better(const Samples& fine,
+                                 const CellMeasurement& finer,
+                                 const Samples& coarse,
+                                 const CellMeasurement& coarser,
+                                 int ix,
+                                 int iy) const;
     /// Number of points in a cell, divided by that of level ground; NaN = unknown.
     [[nodiscard]] float density_ratio(const Samples& samples, int ix, int iy, float z_m) const;
     /// True if the cell reaches beyond the image and has too few points (see `border_share`).

@@ -123,11 +123,12 @@ camera::PixelBox fine_region(const FineConfig& config,
         // in range: clamped
         return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(size)));
     };
-    const int u = inside(std::floor(region_px.min().x()) - left_px, rig.width);
+    const int first_u = inside(std::floor(region_px.min().x()), rig.width);
     const int v = inside(std::floor(region_px.min().y()), rig.height);
     const int u_end = inside(std::ceil(region_px.max().x()) + 1.0, rig.width);
     const int v_end = inside(std::ceil(region_px.max().y()) + 1.0, rig.height);
-    if (u_end - u < kLeastSide_px || v_end - v < kLeastSide_px) return {};
+    if (u_end - first_u < kLeastSide_px || v_end - v < kLeastSide_px) return {};
+    const int u = std::max(0, first_u - left_px);
     return {u, v, u_end - u, v_end - v};
 }
 

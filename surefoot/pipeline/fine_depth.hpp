@@ -27,8 +27,8 @@ struct FineConfig {
     double to_m = 2.5;
     double half_width_m = 0.6;
     double depth_m = 0.2;   ///< how far it reaches below the ground: steps down
-    double height_m = 0.2;  ///< and above the ground
-    /// The machine stands still after this time without motion. It is then observed finely at once.
+    double height_m = 0.2;  ///< how far it reaches above the ground
+    /// After this time without motion the region is matched at once, even before `every_s`.
     double still_s = 0.2;
 
     void describe(ConfigVisitor& visitor);
@@ -59,7 +59,7 @@ struct FineConfig {
 class FineSchedule {
   public:
     explicit FineSchedule(const FineConfig& config) : config_(config) {}
-    /// Call for every frame.
+    /// Call for every frame whose depth is measured.
     [[nodiscard]] bool is_due(std::int64_t time_ns, const Pose& T_odom_body);
     /// Notes that the frame of the last `is_due` was observed finely.
     void observed() noexcept;

@@ -93,7 +93,7 @@ int scale_of(const FineConfig& config, const camera::StereoRig& rig) {
     return rig.right ? fine_scale(config, rig.left.width, rig.left.height) : 1;
 }
 
-bool has_depth(const StereoFrame& frame) {
+bool carries_depth(const StereoFrame& frame) {
     return frame.known_depth || frame.right.empty();
 }
 
@@ -147,7 +147,9 @@ Pipeline::Pipeline(const PipelineConfig& config,
 const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
                                  const std::optional<Pose>& T_odom_first_body) {
     first_frames = first_frames.first(std::min(first_frames.size(), kAlignmentFrames));
-    if (std::any_of(first_frames.begin(), first_frames.end(), has_depth)) scale_ = 1;
+    const bool with_depth = std::any_of(first_frames.begin(), first_frames.end(), carries_depth);
+    scale_ = with_depth ? 1 : scale_of(config_.fine, nominal_rig_);
+    fine_schedule_ = FineSchedule(config_.fine);
     // Undoes the result of an earlier alignment.
     if (self_calibration_ || fine_) see_with(nominal_rig_);
     self_calibration_.reset();
@@ -240,6 +242,7 @@ bool Pipeline::see_with(const camera::StereoRig& rig) {
 void Pipeline::see_coarsely() {
     camera::RectificationConfig config = config_.camera;
     config.rectified_focal_px /= scale_;
+    config.rectified_width_px = config.rectified_height_px = 0;  // the size of the smaller images
     auto coarse = camera::Rectifier::make(camera::shrunk(corrected_rig_, scale_), config);
     if (!coarse) {  // too small to be rectified
         scale_ = 1;
@@ -253,6 +256,7 @@ void Pipeline::see_coarsely() {
 
 const StereoFrame& Pipeline::coarse(const StereoFrame& frame) {
     if (!fine_) return frame;
+    SUREFOOT_ASSERT(!carries_depth(frame));
     coarse_frame_.time_ns = frame.time_ns;
     coarse_frame_.index = frame.index;
     coarse_frame_.imu = frame.imu;
@@ -283,9 +287,9 @@ void Pipeline::correct_right_camera(std::span<const StereoFrame> frames) {
 
 FrameReport Pipeline::process(const StereoFrame& full_frame, Work work) {
     FrameReport report = check(full_frame, work);
-    const StereoFrame& frame = coarse(full_frame);
-    if (!report.frame_status.is_new_and_whole()) return skip(frame, std::move(report));
+    if (!report.frame_status.is_new_and_whole()) return skip(full_frame, std::move(report));
     StageTimer timer(clock_, report);
+    const StereoFrame& frame = coarse(full_frame);
 
     const MotionEstimate motion = move(frame);
     report.motion = motion;
@@ -438,7 +442,7 @@ void Pipeline::hide_mirrored_ground() {
 }
 
 bool Pipeline::measure_fine_depth(const StereoFrame& frame, const MotionEstimate& motion) {
-    if (!fine_ || has_depth(frame) || !alignment_.has_ground || motion.health == Health::lost ||
+    if (!fine_ || !alignment_.has_ground || motion.health == Health::lost ||
         !fine_schedule_.is_due(motion.time_ns, motion.T_odom_body))
         return false;
     const camera::PixelBox box = fine_region(config_.fine,

@@ -46,7 +46,8 @@ using Clock = std::int64_t (*)();
 ///
 /// `align` uses the full images. Then large images are made smaller (FineConfig::scale): odometry,
 /// depth and all results refer to the smaller images (`rig()`). The map also takes depth of the
-/// full images, in the fine region. Images that come with depth are not made smaller.
+/// full images, in the fine region. Images that come with depth are not made smaller. Either all
+/// frames carry depth (RGB-D, `known_depth`), or none.
 ///
 /// Frames too bright or too dark get odometry only; several in a row are reported in the same way.
 /// If a frame measures less than 0.01 m^2 of the map, the snapshot keeps the older stamp.
@@ -77,7 +78,7 @@ class Pipeline {
 
     [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rectifier_->rig(); }
-    /// Size of the images divided by the size of `rig()`, see FineConfig::scale.
+    /// Size of the images divided by the size of `rig()` after `align`, see FineConfig::scale.
     [[nodiscard]] int scale() const noexcept { return scale_; }
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
     /// True if neither the rig nor the settings state the mounting of the camera.

@@ -170,6 +170,7 @@ class Accuracy(CliTest):
         report = self.json_of(*run)
         self.assertEqual((report["camera"]["width"], report["camera"]["height"]), (640, 360))
         self.assertEqual(report["fine"], {"scale": 2, "frames": 2})  # every 0.5 s
+        self.assertGreater(report["truth"]["depth"]["pixels"], 100_000)
         self.assertGreater(report["map"]["known_cells"], 1000)
         whole = self.json_of(*run, "--set", "fine.scale=1", "--set", "stereo.disparities=128")
         self.assertEqual((whole["camera"]["width"], whole["fine"]), (1280, {"scale": 1, "frames": 0}))

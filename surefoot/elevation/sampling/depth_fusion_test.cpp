@@ -537,6 +537,29 @@ TEST(DepthFusion, ACellTakesOneMeasurementOfTheFinestView) {
         << "the border of the part is known";
 }
 
+/// The fine part shows floor where the coarse view shows an obstacle: the obstacle stays.
+TEST(DepthFusion, AnObstacleOfTheCoarserViewIsKept) {
+    const camera::RectifiedRig fine_rig = fine_part_of_zed();
+    const camera::RectifiedRig coarse_rig = zed();
+    const DepthImage fine = render({}, fine_rig, body_at(0));
+    for (const double height_m : {0.1, 0.5, 1.8}) {  // the last one ends above the camera
+        const DepthImage coarse = render({1.5, height_m}, coarse_rig, body_at(0));
+        ElevationMap alone({});
+        alone.add(coarse_rig, body_at(0), coarse, 0);
+        ElevationMap map({});
+        const DepthView views[] = {{fine_rig, fine}, {coarse_rig, coarse}};
+        map.add(views, body_at(0), 0);
+        int obstacle = 0;
+        for (std::size_t i = 0; i < alone.layers().height_m.size(); ++i) {
+            const float z_m = alone.layers().height_m.data()[i];
+            if (!(z_m > 0.08F)) continue;
+            ++obstacle;
+            EXPECT_EQ(map.layers().height_m.data()[i], z_m) << height_m << " " << i;
+        }
+        EXPECT_GT(obstacle, 30) << height_m;
+    }
+}
+
 TEST(DepthFusion, WhereFineMatchesFailTheCoarserViewCounts) {
     const StepScene floor;
     constexpr double kOther_m = 0.02;
