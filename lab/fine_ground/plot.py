@@ -1,4 +1,4 @@
-"""Tables of docs/lab/fine_ground.md: the map from coarse frames with fine ground, against VGA and full-size images."""
+"""Tables of docs/lab/fine_ground.md: the map from coarse frames with fine ground, against VGA and coarse frames alone."""
 import hashlib
 import json
 import statistics

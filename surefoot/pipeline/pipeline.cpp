@@ -214,8 +214,7 @@ std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFram
     const std::size_t step = std::max<std::size_t>(1, (frames.size() - 1) / 2);
     for (std::size_t i = 0; i < frames.size(); i += step) {
         const StereoFrame& frame = frames[std::min(i, frames.size() - 1)];
-        if (frame.known_depth || frame.right.empty() || !frame.frame_status.is_new_and_whole())
-            continue;
+        if (carries_depth(frame) || !frame.frame_status.is_new_and_whole()) continue;
         rectify(frame);
         const auto found = stereo::match_corners(
             pair_.left.view(),
@@ -459,12 +458,12 @@ bool Pipeline::measure_fine_depth(const StereoFrame& frame, const MotionEstimate
 FusionCounts Pipeline::fuse(const DepthImage& depth, bool with_fine, const MotionEstimate& motion) {
     if (motion.health == Health::lost) return {};  // the pose is unknown
     const elevation::DepthView whole{rectifier_->rig(), depth};
-    const FusionCounts counts = [&] {
-        if (!with_fine)
-            return map_.add({&whole, 1}, motion.T_odom_body, motion.time_ns, *executor_);
-        const elevation::DepthView views[] = {{fine_->rig(), fine_->depth()}, whole};
-        return map_.add(views, motion.T_odom_body, motion.time_ns, *executor_);
-    }();
+    const elevation::DepthView views[] = {
+        with_fine ? elevation::DepthView{fine_->rig(), fine_->depth()} : whole, whole};
+    const FusionCounts counts = map_.add(std::span(views).subspan(with_fine ? 0 : 1),
+                                         motion.T_odom_body,
+                                         motion.time_ns,
+                                         *executor_);
     if (!shows_ground(counts, map_.geometry().resolution_m)) return counts;
     last_fused_ns_ = motion.time_ns;
     ++version_;
