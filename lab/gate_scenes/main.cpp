@@ -7,11 +7,13 @@
 //               (errors as measured, but the smallest sigma stated everywhere)
 //       depth   map of a run with analytic depth and true poses
 //       images  map of a run of the whole pipeline with images of the fitted ZED profile
+//       large   the same with images of 1280 x 720 px, so the ground in front is matched finely
 //       curve   as maps, with the noise and single limits of the gate scaled
 //       drift   as maps; the machine stands off its believed position by the stated drift
 // SCRATCH       folder for results and temporary files
 // SCENES        number of scenes with a hazard per kind. The number of safe scenes per kind is a
-//               tenth of it for maps, a fifth for depth and images, and equal for curve and drift.
+//               tenth of it for maps, a fifth for depth, images and large, and equal for curve and
+//               drift.
 // KINDS         kinds of hazards with commas between them (kHazardNames); default: all
 // FROM          number of the first scene; default 0
 //
@@ -20,8 +22,8 @@
 //
 // Each scene has one movement. The oracle (sim::judge) must rate it as clearly dangerous in a scene
 // with a hazard, and as clearly safe in a safe scene; otherwise the scene is drawn again. In every
-// hundredth scene the gate is also asked for all 26 movements. The tiers depth and images are
-// called runs below; there this happens in every scene.
+// hundredth scene the gate is also asked for all 26 movements. The tiers depth, images and large
+// are called runs below; there this happens in every scene.
 //
 // Results are files in SCRATCH/TIER, one set per chunk of scenes. A file is written completely or
 // not at all, so that the same command continues an interrupted campaign.
@@ -79,7 +81,7 @@ namespace {
 constexpr int kMostDraws = 40;
 constexpr int kAllEvery = 100;
 constexpr int kSafeEvery = 10;       ///< a safe scene for every n-th index in the tier maps
-constexpr int kSafeEveryOfRuns = 5;  ///< stride for depth and images, whose runs take seconds
+constexpr int kSafeEveryOfRuns = 5;  ///< stride for runs, which take seconds
 
 /// A machine whose gate is queried, and the errors of the map that this gate reads.
 struct Variant {
@@ -384,16 +386,14 @@ class Campaign {
         for (std::uint64_t index = from; index < from + count; ++index) {
             for (const bool relief_only : {false, true}) {
                 if (relief_only && index % safe_every() != 0) continue;
-                Status done = tier_ == "maps" || tier_ == "curve" || tier_ == "drift"
-                                  ? ask_on_map(kind, relief_only, seed, index, tally)
-                                  : ask_after_run(kind, relief_only, seed, index, tally);
+                Status done = is_run() ? ask_after_run(kind, relief_only, seed, index, tally)
+                                       : ask_on_map(kind, relief_only, seed, index, tally);
                 if (!done) return done;
             }
         }
         if (auto written = io::write_file(stem + ".misses.csv", tally.misses); !written)
             return written;
-        const bool is_run = tier_ == "depth" || tier_ == "images";
-        if (is_run && !tally.refused.empty()) {
+        if (is_run() && !tally.refused.empty()) {
             if (auto written = io::write_file(stem + ".refused.txt", tally.refused); !written)
                 return written;
         }
@@ -406,7 +406,10 @@ class Campaign {
   private:
     [[nodiscard]] std::uint64_t safe_every() const {
         if (tier_ == "maps") return kSafeEvery;
-        return tier_ == "depth" || tier_ == "images" ? kSafeEveryOfRuns : 1;
+        return is_run() ? kSafeEveryOfRuns : 1;
+    }
+    [[nodiscard]] bool is_run() const {
+        return tier_ == "depth" || tier_ == "images" || tier_ == "large";
     }
     [[nodiscard]] Status ask_on_map(
         Hazard kind, bool relief_only, std::uint64_t seed, std::uint64_t index, Tally& tally) {
@@ -447,7 +450,9 @@ class Campaign {
         Hazard kind, bool relief_only, std::uint64_t seed, std::uint64_t index, Tally& tally) {
         Question question = draw(kind, relief_only, seed, index, machine_, Placing::on_way);
         if (question.draws == 0) return {};
-        const Look look = tier_ == "depth" ? Look::analytic : Look::images;
+        const Look look = tier_ == "depth"   ? Look::analytic
+                          : tier_ == "large" ? Look::large_images
+                                             : Look::images;
         const auto run = run_chain(question.scene, look, 1.0, folder_, serial_);
         // A run without a map counts as a result, not as an error.
         if (!run) {
@@ -604,12 +609,14 @@ int show_again(const std::string& folder,
 }
 
 int run(const std::vector<std::string>& words) {
-    const std::vector<std::string> tiers{"maps", "depth", "images", "curve", "drift", "again"};
+    const std::vector<std::string> tiers{
+        "maps", "depth", "images", "large", "curve", "drift", "again"};
     const bool known =
         words.size() >= 4 && std::find(tiers.begin(), tiers.end(), words[0]) != tiers.end();
     if (!known)
-        return app::report(usage_error(
-            "gate_scenes maps|depth|images|curve|drift SCRATCH FIRST_SEED SCENES [KINDS [FROM]]"));
+        return app::report(
+            usage_error("gate_scenes maps|depth|images|large|curve|drift SCRATCH FIRST_SEED SCENES "
+                        "[KINDS [FROM]]"));
     const auto machine_file = app::load_machine("rex");
     if (!machine_file) return app::report(machine_file.error());
     const Machine& machine = (*machine_file)->machine;

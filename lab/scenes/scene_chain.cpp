@@ -59,6 +59,7 @@ Result<ChainRun> run_chain(const HazardScene& scene,
     sim.seed = scene.seed;
     sim.noise = noise;
     sim.profile = sim::CameraProfile::zed;
+    if (look == Look::large_images) sim.rig_preset = "zed_hd720";
     if (look == Look::analytic) {
         sim.sensor = sim::Sensor::analytic;
         sim.known_motion = true;

@@ -14,8 +14,9 @@ namespace surefoot::experiments {
 
 /// Input of the pipeline in a simulated run.
 enum class Look : std::uint8_t {
-    analytic,  ///< true disparities with the errors of a matcher, and true motion
-    images,    ///< rendered images of the fitted ZED profile; matcher and odometry use them
+    analytic,      ///< true disparities with the errors of a matcher, and true motion
+    images,        ///< rendered images of the fitted ZED profile; matcher and odometry use them
+    large_images,  ///< the same with 1280 x 720 px, so the ground in front is matched finely
 };
 
 /// State after the last frame of a run.

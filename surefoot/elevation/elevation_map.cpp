@@ -108,7 +108,7 @@ FusionCounts ElevationMap::add(std::span<const DepthView> views,
     for (std::size_t i = 0; i < views.size(); ++i) {
         const auto& [rig, depth] = views[i];
         SUREFOOT_ASSERT(has_equal_sizes(depth));
-        Samples& samples = samples_of_view(i);
+        Samples& samples = samples_[i];
         if (DepthSampler::can(config_)) {
             samples.sampler.sample(
                 config_, rig, T_odom_body, depth, geometry(), executor, samples.of_image, counts);
@@ -120,6 +120,11 @@ FusionCounts ElevationMap::add(std::span<const DepthView> views,
         samples.expected.emplace(rig, T_odom_body, geometry());
         const double ratio = rig.fx_px / views.back().rig.fx_px;
         samples.pixel_ratio = static_cast<float>(ratio * ratio);
+        // A larger image has more pixels of the same face.
+        samples.reduction = config_.reduction;
+        // in range: describe() limits the setting, and a rig's focal lengths differ by a scale
+        samples.reduction.min_face_points =
+            static_cast<int>(std::lround(ratio * ratio * config_.reduction.min_face_points));
     }
     const camera::RectifiedRig& rig = views.back().rig;
     const Eigen::Vector3d camera_m = (T_odom_body * rig.T_body_camera).translation_m;
@@ -138,9 +143,10 @@ FusionCounts ElevationMap::add_points(std::span<const MeasuredPoint> points,
     points_from_cloud(
         config_, points, T_body_sensor, T_odom_body, geometry().origin_m, points_, counts);
     view_count_ = 1;
-    Samples& samples = samples_of_view(0);
+    Samples& samples = samples_[0];
     sample_points(samples, counts);
     samples.expected.reset();
+    samples.reduction = config_.reduction;
     const Eigen::Vector3d sensor_m = (T_odom_body * T_body_sensor).translation_m;
     fuse_samples(T_odom_body, sensor_m, time_ns, executor, counts);
     counts.cells_cleared += sight_.apply(time_ns, executor, cells_);
@@ -176,11 +182,6 @@ Result<std::int64_t> ElevationMap::insert(const grid::MapRegion& region,
         ++filled;
     }
     return filled;
-}
-
-ElevationMap::Samples& ElevationMap::samples_of_view(std::size_t view) {
-    if (view == samples_.size()) samples_.emplace_back();
-    return samples_[view];
 }
 
 void ElevationMap::sample_points(Samples& samples, FusionCounts& counts) {
@@ -284,7 +285,7 @@ void ElevationMap::reduce_row(int iy) {
     const std::ptrdiff_t scratch = static_cast<std::ptrdiff_t>(RowBlocks::of_row(iy)) * nx;
     for (std::size_t i = 0; i < view_count_; ++i) {
         const CellGroups& groups = samples_[i].groups;
-        reduce_cells(config_.reduction,
+        reduce_cells(samples_[i].reduction,
                      groups.begin() + static_cast<std::ptrdiff_t>(iy) * nx,
                      nx,
                      groups.z_m(),
@@ -293,28 +294,13 @@ void ElevationMap::reduce_row(int iy) {
     }
     if (view_count_ == 1) return;
     std::uint8_t* const view = view_.data() + row_start(iy);
+    const CellMeasurement* const finer = samples_[0].measured.data() + scratch;
+    const CellMeasurement* const coarser = samples_[1].measured.data() + scratch;
     for (int ix = 0; ix < nx; ++ix) {
-        const std::size_t best = best_view(ix, iy);
-        view[ix] = static_cast<std::uint8_t>(best);
-        measured[ix] = samples_[best].measured[static_cast<std::size_t>(scratch + ix)];
+        const bool better = is_better(samples_[0], finer[ix], samples_[1], coarser[ix], ix, iy);
+        view[ix] = better ? 0 : 1;
+        measured[ix] = better ? finer[ix] : coarser[ix];
     }
-}
-
-std::size_t ElevationMap::best_view(int ix, int iy) const {
-    const auto at =
-        static_cast<std::size_t>(RowBlocks::of_row(iy)) * static_cast<std::size_t>(geometry().nx) +
-        static_cast<std::size_t>(ix);
-    std::size_t best = view_count_ - 1;
-    for (std::size_t i = view_count_ - 1; i-- > 0;) {
-        if (is_better(samples_[i],
-                      samples_[i].measured[at],
-                      samples_[best],
-                      samples_[best].measured[at],
-                      ix,
-                      iy))
-            best = i;
-    }
-    return best;
 }
 
 bool ElevationMap::is_better(const Samples& fine,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -39,7 +39,7 @@ struct DepthView {
 /// A cell takes the measurement of a finer view only if this view has at least this share of the
 /// point density of the coarser view. Otherwise the finer matches failed there. ASSUMPTION.
 inline constexpr float kLeastShareOfCoarser = 0.5F;
-inline constexpr std::size_t kMostViews = 8;  ///< largest number of views of one frame
+inline constexpr std::size_t kMostViews = 2;  ///< largest number of views of one frame
 
 /// Robot-centric elevation map in odom (Fankhauser 2014): one height with its variance per cell, in
 /// a window that moves with the body. Call `follow` for every motion, then `add` for a frame that
@@ -65,10 +65,10 @@ class ElevationMap {
                      const DepthImage& depth,
                      std::int64_t time_ns,
                      Executor& executor = serial());
-    /// Fuses depth images of one instant: parts in which a finer image was matched, finest first,
-    /// then the whole image. Each cell takes one measurement: that of the finest view that is
-    /// better (see `is_better`), else that of the whole image.
-    /// At most kMostViews views.
+    /// Fuses one or two depth images of one instant: if there are two, the first is the part in
+    /// which a finer image was matched, and the last is the whole image. Each cell takes one
+    /// measurement: that of the finer view if it is better (see `is_better`), else that of the
+    /// whole image.
     FusionCounts add(std::span<const DepthView> views,
                      const Pose& T_odom_body,
                      std::int64_t time_ns,
@@ -113,13 +113,13 @@ class ElevationMap {
         CellSamples of_image;
         CellGroups groups;
         std::optional<ExpectedPoints> expected;  ///< empty for clouds
+        ReductionConfig reduction;               ///< with the point counts of this view
         /// Number of pixels of a surface in this view per pixel in the last (coarsest) view.
         float pixel_ratio = 1.0F;
         /// One row per block; used if a frame has more than one view.
         std::vector<CellMeasurement> measured;
     };
 
-    Samples& samples_of_view(std::size_t view);
     void sample_points(Samples& samples, FusionCounts& counts);
     void fuse_samples(const Pose& T_odom_body,
                       const Eigen::Vector3d& camera_m,
@@ -133,8 +133,6 @@ class ElevationMap {
     void reduce_block(int block);
     /// Measures the cells of a row.
     void reduce_row(int iy);
-    /// Returns the view whose measurement the cell takes.
-    [[nodiscard]] std::size_t best_view(int ix, int iy) const;
     /// True if the cell should take the measurement of the finer view. False if the coarser view
     /// measures a higher surface, or one that reaches out of the finer view, or if the finer view
     /// has too few points.
@@ -163,8 +161,8 @@ class ElevationMap {
     ElevationCells cells_;
     CloudFilter filter_;
     std::vector<GridPoint> points_;
-    std::deque<Samples> samples_;  ///< one element per view, in the order of the views
-    std::size_t view_count_ = 0;   ///< number of views of this frame
+    std::array<Samples, kMostViews> samples_;  ///< in the order of the views
+    std::size_t view_count_ = 0;               ///< number of views of this frame
     /// One row of cells per block, or all cells if heights are aligned.
     std::vector<CellMeasurement> measured_;
     std::vector<std::uint8_t> view_;  ///< view of each element of `measured_`

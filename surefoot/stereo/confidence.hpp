@@ -28,16 +28,16 @@ struct MatchEvidence {
 /// Fitted to Middlebury cones and cloth3 and to four scenes of the simulated ZED at one and two
 /// times its noise (lab/sigma_fit/main.cpp). Criterion: likelihood of Student's t, with a fixed
 /// share of the shift, and 68 % (95 %) of every image within one (two) sigma. All coefficients
-/// were then multiplied by 1.02, so that on average 68 % lie within one sigma, and rounded.
+/// were then multiplied by 1.003, so that on average 68 % lie within one sigma, and rounded.
 /// docs/lab/matching.md has other pairs and the held-out data. With an ideal camera, the scatter of
 /// the disparities is a third to a half of this sigma.
 [[nodiscard]] float match_sigma_px(const MatchEvidence& evidence) noexcept;
 
-inline constexpr float kSigmaFloor_px = 0.138F;
-inline constexpr float kSigmaGain = 0.153F;
-inline constexpr float kSigmaShiftShare = 0.46F;
-inline constexpr float kSigmaJump_px = 0.31F;
-inline constexpr float kSigmaHole_px = 1.24F;
+inline constexpr float kSigmaFloor_px = 0.147F;
+inline constexpr float kSigmaGain = 0.121F;
+inline constexpr float kSigmaShiftShare = 0.45F;
+inline constexpr float kSigmaJump_px = 0.30F;
+inline constexpr float kSigmaHole_px = 1.41F;
 inline constexpr float kMaxSigma_px = 1.5F;
 /// Distance at which the nearness to a jump is 0; it is 1 at the jump.
 inline constexpr float kJumpReach_px = 12.0F;
@@ -53,11 +53,11 @@ inline constexpr float kMaxNoisePerPixel_px = 100.0F;
 // pairs, six frames of garden_walk, and ten scenes of the simulated ZED at one and two times its
 // noise. A real image has the weight of three simulated ones. docs/lab/matching.md has the
 // reliability of these and of held-out images.
-inline constexpr float kScoreConstant = -5.9F;
-inline constexpr float kScoreNearJump = 3.5F;
-inline constexpr float kScoreNoise = 0.17F;
-inline constexpr float kScoreShift = 0.34F;
-inline constexpr float kScoreUnknown = 3.5F;
+inline constexpr float kScoreConstant = -5.7F;
+inline constexpr float kScoreNearJump = 3.05F;
+inline constexpr float kScoreNoise = 0.19F;
+inline constexpr float kScoreShift = 1.14F;
+inline constexpr float kScoreUnknown = 3.6F;
 
 /// Returns the probability that the match is wrong by more than 1 px. It is a logistic function of
 /// the evidence, and at least kNearSideOutlierProbability on the near side of a jump.

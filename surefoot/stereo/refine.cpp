@@ -13,7 +13,7 @@ namespace surefoot::stereo {
 namespace {
 
 constexpr int kMaxWindowRadius_px = 16;
-constexpr int kMaxSmoothRadius_px = 16;
+constexpr int kMaxSmoothRadius_px = 32;
 /// Number of rows in a block. A block starts by summing a window of rows, so it should be higher
 /// than the window.
 constexpr int kSolvedRows = 64;
@@ -82,7 +82,7 @@ void SubpixelRefiner::smooth_block(int first,
                                    const Image<float>& found_px,
                                    Filter filter) {
     const int width = found_px.width();
-    const int radius = config_.smooth_radius_px;
+    const int radius = config_.smooth_along_px;
     std::vector<float> scratch;
     std::vector<float> padded(static_cast<std::size_t>(width + 2 * radius),
                               std::numeric_limits<float>::quiet_NaN());
@@ -121,7 +121,7 @@ void SubpixelRefiner::warp_block(int first,
     row.pairs = pairs.data();
     for (int v = first; v < last; ++v) {
         float* const disparity = disparity_px.row(v);
-        smooth_down(horizontal_, v, config_.smooth_radius_px, config_.same_surface_px, disparity);
+        smooth_down(horizontal_, v, config_.smooth_down_px, config_.same_surface_px, disparity);
         smooth_image_row(left, v, sums, smooth_left.data());
         smooth_image_row(right, v, sums, smooth_right.data() + 1);
         row.disparity_px = disparity;

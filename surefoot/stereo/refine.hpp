@@ -10,7 +10,11 @@
 namespace surefoot::stereo {
 
 struct RefineConfig {
-    int smooth_radius_px = 4;      ///< averages neighbours on the same surface over 9x9 pixels
+    // Averages neighbours on the same surface over 41 x 9 pixels. Creases of the ground (nosings,
+    // the feet of risers) run more along the rows than across them, so a wide window rounds them
+    // less than a high one. lab/matching.md compares sizes.
+    int smooth_along_px = 20;      ///< radius along the row, at most 32
+    int smooth_down_px = 4;        ///< radius down the column, at most 32
     double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
     int window_radius_px = 12;     ///< 25x25 pixels share one correction; the radius is at most 16
     double prior_sigma_px = 0.1;   ///< prior standard deviation of the smoothed disparity

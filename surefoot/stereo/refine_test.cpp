@@ -291,9 +291,10 @@ class PlainRefinement {
 
     [[nodiscard]] float smoothed(const Image<float>& in, int u, int v, int du, int dv) const {
         const float center = in.at(u, v);
+        const int radius_px = du != 0 ? config_.smooth_along_px : config_.smooth_down_px;
         float sum = 0.0F;
         float count = 1.0F;
-        for (int k = 1; k <= config_.smooth_radius_px; ++k) {
+        for (int k = 1; k <= radius_px; ++k) {
             if (!in.contains(u - k * du, v - k * dv) || !in.contains(u + k * du, v + k * dv)) break;
             const float low = in.at(u - k * du, v - k * dv) - center;
             const float high = in.at(u + k * du, v + k * dv) - center;
