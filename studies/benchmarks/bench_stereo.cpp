@@ -12,6 +12,7 @@
 #include "studies/benchmarks/bench_result.hpp"
 #include "studies/runs/run_output.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/pipeline/fine_depth.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/semi_global.hpp"
 
@@ -19,6 +20,7 @@ namespace surefoot::app {
 namespace {
 
 constexpr int kRepeats = 31;
+constexpr double kGroundHeight_m = 0.95;  ///< of base_link in the demonstration scene
 
 struct Work {
     const char* rig;
@@ -29,8 +31,13 @@ struct Work {
     }
 };
 
-/// Renders one pair of the demonstration scene and rectifies it. The settings determine the noise.
-Status see(const CommonOptions& common, const Settings& settings, Executor& executor, Work& work) {
+/// Renders one pair of the demonstration scene and rectifies it, or only the part that the pipeline
+/// matches at full size. The settings determine the noise.
+Status see(const CommonOptions& common,
+           const Settings& settings,
+           bool only_fine_region,
+           Executor& executor,
+           Work& work) {
     SourceRequest request{"demo_stairs", work.rig, 0.0, 1, common.seed, settings.sim};
     auto source = open_simulation(request, executor);
     if (!source) return source.error();
@@ -38,7 +45,23 @@ Status see(const CommonOptions& common, const Settings& settings, Executor& exec
     if (!frame) return frame.error();
     const auto rectifier = camera::Rectifier::make((*source)->rig());
     if (!rectifier) return rectifier.error();
-    rectifier->rectify(**frame, work.pair);
+    if (!only_fine_region) {
+        rectifier->rectify(**frame, work.pair);
+        return {};
+    }
+    const camera::RectifiedRig& whole = rectifier->rig();
+    const pipeline::FineConfig& fine = settings.pipeline.fine;
+    work.disparities = pipeline::at_scale(settings.pipeline.stereo,
+                                          pipeline::fine_scale(fine, whole.width, whole.height))
+                           .disparities;
+    const Pose T_odom_body{Eigen::Quaterniond::Identity(), {0.0, 0.0, kGroundHeight_m}};
+    const camera::PixelBox box =
+        pipeline::fine_region(fine, whole, T_odom_body, kGroundHeight_m, work.disparities);
+    if (box.width == 0)
+        return input_error(fmt::format(
+            "stereo/fine: {} does not see the fine region; change fine.from_m and fine.to_m",
+            work.rig));
+    rectifier->rectify_part(**frame, box, work.pair);
     return {};
 }
 
@@ -125,7 +148,8 @@ Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common, Execu
     if (!settings) return settings.error();
     std::vector<BenchResult> results;
     for (Work work : {Work{"zed_vga", 64, {}}, Work{"zed_hd720", 128, {}}}) {
-        if (auto status = see(common, *settings, executor, work); !status) return status.error();
+        if (auto status = see(common, *settings, false, executor, work); !status)
+            return status.error();
         results.push_back(time_search(work, "search", executor));
         results.push_back(time_match(work, *settings, "match", executor));
         const std::size_t match = results.size() - 1;
@@ -141,6 +165,12 @@ Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common, Execu
         }
         // OpenCV comes last, because its threads keep spinning for a while after their work.
         results[match].peer = opencv(work, *settings);
+    }
+    for (Work work : {Work{"zed_hd720", 0, {}}, Work{"zed_hd2k", 0, {}}}) {
+        if (auto status = see(common, *settings, true, executor, work); !status)
+            return status.error();
+        results.push_back(time_match(work, *settings, "fine", executor));
+        results.back().name = fmt::format("stereo/fine_region_of_{}", work.rig);
     }
     return results;
 }

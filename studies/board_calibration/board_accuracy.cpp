@@ -21,6 +21,9 @@ namespace {
 /// Half side of the evaluated part, as a share of the half side of the board. The border is left
 /// out, because stereo matchers smear foreground and background there.
 constexpr double kInnerShare = 0.8;
+/// With fewer trusted pixels on the board [share] no error is given: the board is out of range, and
+/// the few matches are wrong.
+constexpr double kLeastTrusted = 0.05;
 constexpr double kMinDistance_m = 0.1;
 constexpr double kMaxDistance_m = 20.0;
 constexpr std::array kUsualDistances_m = {0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0};
@@ -36,15 +39,16 @@ struct BoardObservation {
 };
 
 /// Widens the configured disparity range if a board at this distance needs more. The new range is
-/// 1.1 times the need, rounded up to a multiple of 16 px, but at most 512 px.
+/// 1.1 times the need, rounded up to a multiple of 16 px, but at most the longest range of the
+/// algorithm.
 pipeline::PipelineConfig with_range_for(double distance_m,
                                         const camera::RectifiedRig& rig,
                                         pipeline::PipelineConfig config) {
     constexpr int kStep = 16;
-    constexpr int kMost = 512;
+    const int most = stereo::longest_range_px(config.stereo.algorithm);
     const double steps = std::ceil(1.1 * rig.depth_to_disparity_px_m() / distance_m / kStep);
-    const int needed = std::min(saturated_integer<int>(steps), kMost / kStep) * kStep;
-    config.stereo.disparities = std::min(std::max(config.stereo.disparities, needed), kMost);
+    const int needed = std::min(saturated_integer<int>(steps), most / kStep) * kStep;
+    config.stereo.disparities = std::min(std::max(config.stereo.disparities, needed), most);
     return config;
 }
 
@@ -84,6 +88,7 @@ BoardObservation look_at(const MeasuredPair& measured,
     const auto points_m = board_points(*measured.rig, measured.depth, nominal_m, side_m, pixels);
     const double share =
         pixels == 0 ? 0.0 : static_cast<double>(points_m.size()) / static_cast<double>(pixels);
+    if (share < kLeastTrusted) return {nominal_m, std::nullopt, 100.0 * share};
     return {nominal_m, eval::board_errors(points_m, true_m), 100.0 * share};
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -279,7 +280,8 @@ Percentiles percentiles(std::vector<double> values) {
         const double rank = std::round(share * static_cast<double>(values.size() - 1));
         return values[static_cast<std::size_t>(rank)];  // in range: share is 0.5 or 0.99
     };
-    return {at(0.5), at(0.99), values.size()};
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    return {sum / static_cast<double>(values.size()), at(0.5), at(0.99), values.size()};
 }
 
 Percentiles stage_percentiles(const RunRecord& record, Stage stage) {

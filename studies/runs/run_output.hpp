@@ -35,8 +35,9 @@ namespace surefoot::app {
 [[nodiscard]] std::string empty_map_reason(const RunRecord& record,
                                            const pipeline::Pipeline& pipeline);
 
-/// Median and 99th percentile of a list of values.
+/// Mean, median and 99th percentile of a list of values.
 struct Percentiles {
+    double mean = 0.0;
     double median = 0.0;
     double p99 = 0.0;
     std::size_t samples = 0;

@@ -44,35 +44,6 @@ eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Traject
     return track;
 }
 
-/// Resamples the exact depth of a raw left image without distortion for the rectified camera. This
-/// camera is slightly rotated if the rig differs from the rig of the scene. The depth is along the
-/// optical axis of the rectified camera and comes from the nearest raw pixel. Empty for another
-/// lens model. The rectified images may be smaller than the raw ones.
-Image<float> seen_by(const camera::RectifiedRig& rig,
-                     const camera::StereoRig& raw_rig,
-                     const Image<float>& raw_m) {
-    const auto* lens = std::get_if<camera::PinholeRadTan>(&raw_rig.left.model);
-    if (lens == nullptr || raw_m.empty()) return {};
-    const Eigen::Matrix3d R_raw_rectified =
-        (raw_rig.body_from_left().inverse() * rig.T_body_camera).R();
-    Image<float> seen_m(rig.width, rig.height, std::nanf(""));
-    for (int v = 0; v < rig.height; ++v) {
-        for (int u = 0; u < rig.width; ++u) {
-            const Eigen::Vector3d ray =
-                R_raw_rectified *
-                Eigen::Vector3d((u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
-            const auto raw = nearest_pixel(lens->fx_px * ray.x() / ray.z() + lens->cx_px,
-                                           lens->fy_px * ray.y() / ray.z() + lens->cy_px,
-                                           raw_m.width(),
-                                           raw_m.height());
-            if (!raw) continue;
-            const float z_m = raw_m.at(raw->u, raw->v);
-            seen_m.at(u, v) = z_m / static_cast<float>(ray.z());
-        }
-    }
-    return seen_m;
-}
-
 /// Removes the poses before `first_ns`, the time of the first processed frame. Returns false if the
 /// body moved before this time: odom then does not start at the origin of the world, and a
 /// comparison without alignment is impossible.
@@ -107,6 +78,31 @@ grid::Layer rated(const pipeline::Pipeline& pipeline, const grid::Layer& height_
 
 }  // namespace
 
+Image<float> depth_seen_by(const camera::RectifiedRig& rig,
+                           const camera::StereoRig& raw_rig,
+                           const Image<float>& raw_m) {
+    const auto* lens = std::get_if<camera::PinholeRadTan>(&raw_rig.left.model);
+    if (lens == nullptr || raw_m.empty()) return {};
+    const Eigen::Matrix3d R_raw_rectified =
+        (raw_rig.body_from_left().inverse() * rig.T_body_camera).R();
+    Image<float> seen_m(rig.width, rig.height, std::nanf(""));
+    for (int v = 0; v < rig.height; ++v) {
+        for (int u = 0; u < rig.width; ++u) {
+            const Eigen::Vector3d ray =
+                R_raw_rectified *
+                Eigen::Vector3d((u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
+            const auto raw = nearest_pixel(lens->fx_px * ray.x() / ray.z() + lens->cx_px,
+                                           lens->fy_px * ray.y() / ray.z() + lens->cy_px,
+                                           raw_m.width(),
+                                           raw_m.height());
+            if (!raw) continue;
+            const float z_m = raw_m.at(raw->u, raw->v);
+            seen_m.at(u, v) = z_m / static_cast<float>(ray.z());
+        }
+    }
+    return seen_m;
+}
+
 double odom_height_m(const pipeline::Pipeline& pipeline,
                      const sim::SceneTruth& truth,
                      const std::vector<FrameReport>& frames) {
@@ -126,7 +122,8 @@ void SimTruth::remember_depth(const StereoFrame& frame) {
 void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline) {
     while (!depths_.empty() && depths_.front().first < frame.index) depths_.pop_front();
     if (depths_.empty() || depths_.front().first != frame.index) return;
-    const Image<float> truth_m = seen_by(pipeline.rig(), scene_->rig(), depths_.front().second);
+    const Image<float> truth_m =
+        depth_seen_by(pipeline.rig(), scene_->rig(), depths_.front().second);
     if (truth_m.empty()) return;
     const DepthImage& depth = pipeline.depth();
     const double fb_px_m = pipeline.rig().depth_to_disparity_px_m();

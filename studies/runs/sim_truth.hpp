@@ -35,6 +35,14 @@ struct TruthFigures {
     Trajectory truth_trajectory;
 };
 
+/// Resamples the exact depth of a raw left image without distortion for the rectified camera. This
+/// camera is slightly rotated if the rig differs from the rig of the scene. The depth is along the
+/// optical axis of the rectified camera and comes from the nearest raw pixel. Empty for another
+/// lens model. The rectified images may be smaller than the raw ones.
+[[nodiscard]] Image<float> depth_seen_by(const camera::RectifiedRig& rig,
+                                         const camera::StereoRig& raw_rig,
+                                         const Image<float>& raw_m);
+
 /// Returns the height of the origin of odom in the world [m]. If the ground was found, odom starts
 /// on the ground, which is z = 0 in the world. Otherwise odom starts at the first body pose, and
 /// the true height of that pose gives the offset.

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "studies/runs/sim_truth.hpp"
 #include "surefoot/eval/depth/sparsification.hpp"
 
 namespace surefoot::app {
@@ -36,11 +37,12 @@ void DepthOrder::after_frame(const FrameReport& frame,
     ++seen_;
     const bool straight = seen_ >= static_cast<int>(pipeline::Pipeline::kAlignmentFrames);
     const bool wanted = straight && seen_ % kEvery == 0 && frame.work == Work::full;
-    const Image<float>& truth_m = source.last_depth_m();
-    const DepthImage& depth = pipeline.depth();
     // Skips raw images, because their true depth belongs to other pixels than the rectified
     // disparity.
-    if (!wanted || !source.rig().rectified || depth.disparity_px.size() != truth_m.size()) return;
+    if (!wanted || !source.rig().rectified) return;
+    const Image<float> truth_m = depth_seen_by(pipeline.rig(), source.rig(), source.last_depth_m());
+    if (truth_m.empty()) return;
+    const DepthImage& depth = pipeline.depth();
     const auto errors_px = disparity_errors(truth_m, pipeline);
     const double auc =
         eval::sparsification(errors_px, {depth.sigma_px.data(), depth.sigma_px.size()}).auc;

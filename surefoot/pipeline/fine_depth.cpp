@@ -19,10 +19,6 @@ constexpr double kNearestDepth_m = 0.1;
 constexpr int kSlices = 24;  ///< of the fine region
 /// Smallest side of a fine region. Smaller regions have less support than the matcher needs.
 constexpr int kLeastSide_px = 64;
-// A machine that moves less counts as standing still. Below these limits the map counts errors of
-// the matcher as repeated (elevation::ViewpointConfig).
-constexpr double kStill_m = 0.005;
-constexpr double kStill_rad = 0.5 * kRadPerDeg;
 
 }  // namespace
 
@@ -32,7 +28,8 @@ void FineConfig::describe(ConfigVisitor& visitor) {
                     0,
                     kMaxScale,
                     "size of the images divided by the size at which every frame is matched; 0 = "
-                    "chosen by the size of the images, 1 = every frame is matched at full size");
+                    "chosen by the size of the images, 1 = every frame is matched at full size "
+                    "(then also set stereo.disparities for this size)");
     visitor.number("every_s",
                    every_s,
                    0.0,
@@ -70,8 +67,8 @@ int fine_scale(const FineConfig& config, int width, int height) noexcept {
 }
 
 stereo::MatcherConfig at_scale(stereo::MatcherConfig coarse, int scale) noexcept {
-    const int longest = coarse.algorithm == stereo::Algorithm::census ? 256 : 512;
-    coarse.disparities = std::min(coarse.disparities * scale, longest);
+    coarse.disparities =
+        std::min(coarse.disparities * scale, stereo::longest_range_px(coarse.algorithm));
     return coarse;
 }
 
@@ -135,8 +132,10 @@ camera::PixelBox fine_region(const FineConfig& config,
 bool FineSchedule::is_due(std::int64_t time_ns, const Pose& T_odom_body) {
     time_ns_ = time_ns;
     const Pose moved = T_odom_still_.inverse() * T_odom_body;
-    if (!has_pose_ || !(std::sqrt(moved.translation_m.squaredNorm()) < kStill_m &&
-                        std::sqrt(log_so3(moved.rotation).squaredNorm()) < kStill_rad)) {
+    if (!has_pose_ ||
+        !(std::sqrt(moved.translation_m.squaredNorm()) < viewpoint_.min_translation_m &&
+          std::sqrt(log_so3(moved.rotation).squaredNorm()) <
+              viewpoint_.min_rotation_deg * kRadPerDeg)) {
         has_pose_ = true;
         T_odom_still_ = T_odom_body;
         still_since_ns_ = time_ns;

@@ -11,6 +11,7 @@
 #include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/frame.hpp"
+#include "surefoot/elevation/visibility/viewpoint_history.hpp"
 #include "surefoot/stereo/matcher.hpp"
 
 namespace surefoot::pipeline {
@@ -54,11 +55,13 @@ struct FineConfig {
                                            double ground_height_m,
                                            int left_px);
 
-/// Decides when a frame is observed finely: after `every_s`, and when the machine has come to rest.
-/// Depends only on stamps and poses.
+/// Decides when a frame is observed finely: after `every_s`, and when the machine has come to rest:
+/// when it moves less than from one viewpoint of the map to another. Depends only on stamps and
+/// poses.
 class FineSchedule {
   public:
-    explicit FineSchedule(const FineConfig& config) : config_(config) {}
+    FineSchedule(const FineConfig& config, const elevation::ViewpointConfig& viewpoint)
+        : config_(config), viewpoint_(viewpoint) {}
     /// Call for every frame whose depth is measured.
     [[nodiscard]] bool is_due(std::int64_t time_ns, const Pose& T_odom_body);
     /// Notes that the frame of the last `is_due` was observed finely.
@@ -66,6 +69,7 @@ class FineSchedule {
 
   private:
     FineConfig config_;
+    elevation::ViewpointConfig viewpoint_;
     std::optional<std::int64_t> observed_ns_;
     std::int64_t time_ns_ = 0;
     Pose T_odom_still_;  ///< pose at which the machine last moved

@@ -125,7 +125,7 @@ Pose at(double x_m) {
 TEST(FineSchedule, ObservesAWalkAtTheGivenRate) {
     FineConfig config;
     config.every_s = 0.5;
-    FineSchedule schedule(config);
+    FineSchedule schedule(config, {});
     std::vector<int> fine;
     for (int i = 0; i < 20; ++i) {
         if (!schedule.is_due(1'000'000'000 + i * kPeriod_ns, at(0.05 * i))) continue;
@@ -139,7 +139,7 @@ TEST(FineSchedule, ObservesAMachineThatStopsAtOnce) {
     FineConfig config;
     config.every_s = 10.0;
     config.still_s = 0.2;
-    FineSchedule schedule(config);
+    FineSchedule schedule(config, {});
     std::vector<int> fine;
     for (int i = 0; i < 30; ++i) {
         const double x_m = 0.05 * std::min(i, 12);  // stops at frame 12
@@ -151,7 +151,7 @@ TEST(FineSchedule, ObservesAMachineThatStopsAtOnce) {
 }
 
 TEST(FineSchedule, ANotObservedFrameStaysDue) {
-    FineSchedule schedule({});
+    FineSchedule schedule({}, {});
     EXPECT_TRUE(schedule.is_due(0, at(0.0)));
     EXPECT_TRUE(schedule.is_due(1, at(0.0)));
 }
@@ -309,6 +309,40 @@ TEST(FineDepth, KnownDepthKeepsItsSize) {
     const FrameReport report = pipeline->process(first, Work::full);
     EXPECT_GT(report.known_cells, 500);
     EXPECT_EQ(report.fine_pixels, 0);
+}
+
+/// Sizes and depth after an alignment depend on its frames alone, not on an earlier alignment.
+TEST(FineDepth, ASecondAlignmentUndoesTheFirst) {
+    const FlatGround ground(1280, 720, 80);
+    Serial serial;
+    const StereoFrame first = ground.frame(0);
+    const auto fresh = [&] { return Pipeline::make(flat_config(), ground.rig(), serial); };
+    auto once = fresh();
+    ASSERT_TRUE(once.ok());
+    once->align({&first, 1}, Pose{});
+    const FrameReport expected = once->process(first, Work::full);
+
+    auto twice = fresh();
+    twice->align({&first, 1}, Pose{});
+    twice->align({&first, 1}, Pose{});
+    auto after_depth = fresh();
+    StereoFrame with_depth = first;
+    DepthImage depth;
+    depth.disparity_px = Image<float>(1280, 720, 80.0F);
+    depth.sigma_px = Image<float>(1280, 720, 0.2F);
+    depth.outlier_probability = Image<float>(1280, 720, 0.0F);
+    with_depth.known_depth = depth;
+    after_depth->align({&with_depth, 1}, Pose{});
+    ASSERT_EQ(after_depth->rig().width, 1280);
+    after_depth->align({&first, 1}, Pose{});
+
+    for (Pipeline* const pipeline : {&*twice, &*after_depth}) {
+        EXPECT_EQ(pipeline->rig().width, 640);
+        const FrameReport report = pipeline->process(first, Work::full);
+        EXPECT_EQ(report.fine_pixels, expected.fine_pixels);
+        EXPECT_EQ(report.depth_pixels, expected.depth_pixels);
+        EXPECT_EQ(report.known_cells, expected.known_cells);
+    }
 }
 
 TEST(FineConfig, ARegionThatEndsBeforeItsStartIsAnError) {

@@ -134,7 +134,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
       rectifier_(std::move(rectifier)),
       odometry_(config.odometry, *rectifier_, rig.imu),
       matcher_(stereo::make_matcher(at_scale(config.stereo, scale_))),
-      fine_schedule_(config.fine),
+      fine_schedule_(config.fine, config.elevation.viewpoint),
       map_(config.elevation),
       mirror_watch_(config.specular),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
@@ -149,7 +149,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
     first_frames = first_frames.first(std::min(first_frames.size(), kAlignmentFrames));
     const bool with_depth = std::any_of(first_frames.begin(), first_frames.end(), carries_depth);
     scale_ = with_depth ? 1 : scale_of(config_.fine, nominal_rig_);
-    fine_schedule_ = FineSchedule(config_.fine);
+    fine_schedule_ = FineSchedule(config_.fine, config_.elevation.viewpoint);
     // Undoes the result of an earlier alignment.
     if (self_calibration_ || fine_) see_with(nominal_rig_);
     self_calibration_.reset();

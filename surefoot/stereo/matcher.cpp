@@ -62,10 +62,11 @@ std::optional<std::string> MatcherConfig::problem() const {
         return fmt::format("stereo.left_right_tolerance_px = {} must be from 0 to 16",
                            left_right_tolerance_px);
     }
-    if (algorithm == Algorithm::census && disparities > 256)
-        return fmt::format(
-            "stereo.disparities = {} must be at most 256 with stereo.algorithm = census",
-            disparities);
+    if (const int longest_px = longest_range_px(algorithm); disparities > longest_px)
+        return fmt::format("stereo.disparities = {} must be at most {} with stereo.algorithm = {}",
+                           disparities,
+                           longest_px,
+                           kAlgorithmNames[static_cast<int>(algorithm)]);
     return std::nullopt;
 }
 

@@ -18,6 +18,10 @@ enum class Algorithm : std::uint8_t {
     bm,      ///< OpenCV's block matcher: fast, but unreliable on weak texture
 };
 inline constexpr const char* kAlgorithmNames[] = {"census", "sgbm", "bm"};
+/// Returns the longest search range of an algorithm [px].
+[[nodiscard]] constexpr int longest_range_px(Algorithm algorithm) noexcept {
+    return algorithm == Algorithm::census ? 256 : 512;
+}
 
 /// Number and directions of the paths along which OpenCV's semi-global matcher sums costs.
 enum class SgbmMode : std::uint8_t {

@@ -142,6 +142,14 @@ class Accuracy(CliTest):
             self.assertTrue((self.dir / "zed" / name).stat().st_size > 100, name)
         self.assertIn("thesis, DUO", (self.dir / "zed" / "std.svg").read_text())
 
+    def test_a_board_nearer_than_the_search_range_has_no_error(self):
+        """At 0.3 m its disparity is 274 px in images of 1280 x 720 px; the matcher searches 256."""
+        found = self.json_of("depth-accuracy", "--rig", "zed_hd720", "--distances", "0.3", "--repeats", 1,
+                             "--out", self.dir / "near")
+        row, = found["distances"]
+        self.assertLess(row["density_percent"], 5.0)
+        self.assertIsNone(row.get("axial_m"))
+
     def test_a_fisheye_rig_and_its_focal_length(self):
         options = ["depth-accuracy", "--rig", "duo_mlx", "--distances", "0.6", "--repeats", 1]
         wide = self.json_of(*options, "--out", self.dir / "wide")["distances"][0]

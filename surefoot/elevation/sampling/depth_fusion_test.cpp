@@ -589,6 +589,51 @@ TEST(DepthFusion, WhereFineMatchesFailTheCoarserViewCounts) {
     EXPECT_LE(others, 3);
 }
 
+/// A fifth of the fine matches fails: enough are left.
+TEST(DepthFusion, AFewFailedFineMatchesDoNotMatter) {
+    const StepScene floor;
+    constexpr double kOther_m = 0.02;
+    const camera::RectifiedRig fine_rig = fine_part_of_zed();
+    DepthImage fine = render(floor, fine_rig, body_at(0));
+    for (std::size_t i = 0; i < fine.disparity_px.size(); ++i)
+        if (i % 5 == 0) fine.disparity_px.data()[i] = kNanF;
+    const camera::RectifiedRig coarse_rig = zed();
+    const DepthImage coarse = render({-100.0, kOther_m}, coarse_rig, body_at(0));
+    ElevationConfig config;
+    config.pixels.surface_check = false;  // it needs the neighbours of a pixel
+    ElevationMap map(config);
+    const DepthView views[] = {{fine_rig, fine}, {coarse_rig, coarse}};
+    map.add(views, body_at(0), 0);
+    EXPECT_GT(cells_at(map, kOther_m).fine, 800);
+}
+
+/// The wall gives a cell about 1400 points in the fine view, and would give it a quarter of them in
+/// the coarse view. `min_face_points` counts points of the coarse view.
+TEST(DepthFusion, AFaceNeedsMorePixelsInAFinerView) {
+    const camera::RectifiedRig fine_rig = fine_part_of_zed();
+    const camera::RectifiedRig coarse_rig = zed();
+    const StepScene wall{1.5, 1.8};  // ends above the camera
+    const DepthImage fine = render(wall, fine_rig, body_at(0));
+    DepthImage nothing = render(wall, coarse_rig, body_at(0));
+    nothing.disparity_px.fill(kNanF);
+    ElevationConfig config;
+    // No height has so many points of the wall.
+    config.reduction.upper_share = 0.5;
+    config.reduction.window_sigma = 0.5;
+    const auto faces = [&](int least) {
+        config.reduction.min_face_points = least;
+        ElevationMap map(config);
+        const DepthView views[] = {{fine_rig, fine}, {coarse_rig, nothing}};
+        map.add(views, body_at(0), 0);
+        const ElevationLayers::Layer& height_m = map.layers().height_m;
+        return std::count_if(height_m.data(), height_m.data() + height_m.size(), [](float z_m) {
+            return z_m > 0.1F;
+        });
+    };
+    EXPECT_GT(faces(250), 10);
+    EXPECT_EQ(faces(600), 0);
+}
+
 TEST(DepthFusion, TwoViewsAllocateNothingAndDoNotDependOnTheExecutor) {
     const camera::RectifiedRig fine_rig = fine_part_of_zed();
     const camera::RectifiedRig coarse_rig = zed();
