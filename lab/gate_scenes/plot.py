@@ -12,7 +12,9 @@ from lab_figures import COLOURS, DOCS, ROOT, bound_of, fill, quantile, read, sav
 
 GATE_SEED, GATE_SCENES = 77_001, 30_000  # scenes of each kind on maps
 # Runs: first seed, wanted number of hazards of all kinds together, title.
-GATE_RUNS = {"depth": (86_001, 3_000, "Maps of runs on analytic depth"), "images": (86_501, 300, "Maps of runs of the whole chain, from images")}
+GATE_RUNS = {"depth": (86_001, 3_000, "Maps of runs on analytic depth"),
+             "images": (86_503, 300, "Maps of runs of the whole chain, from images of 672 x 376 px"),
+             "large": (86_701, 300, "Maps of runs of the whole chain, from images of 1280 x 720 px")}
 GATE_KEPT = DOCS / "gate_runs.csv"  # results of hours, from more than one computer
 GATE_KEPT_MISSES = DOCS / "gate_runs_misses.csv"
 GATE_CURVE_SEEDS, GATE_CURVE_SCENES = range(21, 25), 50

@@ -311,6 +311,19 @@ TEST(FineDepth, KnownDepthKeepsItsSize) {
     EXPECT_EQ(report.fine_pixels, 0);
 }
 
+/// The alignment measures depth at full size; it does not belong to the coarse camera.
+TEST(FineDepth, NoDepthOfTheAlignmentStays) {
+    const FlatGround ground(1280, 720, 80);
+    Serial serial;
+    auto pipeline = Pipeline::make(flat_config(), ground.rig(), serial);
+    ASSERT_TRUE(pipeline.ok());
+    const StereoFrame first = ground.frame(0);
+    pipeline->align({&first, 1});
+    EXPECT_EQ(pipeline->rig().width, 640);
+    EXPECT_EQ(pipeline->depth().disparity_px.size(), 0);
+    EXPECT_GT(pipeline->process(first, Work::full).depth_pixels, 0);
+}
+
 /// Sizes and depth after an alignment depend on its frames alone, not on an earlier alignment.
 TEST(FineDepth, ASecondAlignmentUndoesTheFirst) {
     const FlatGround ground(1280, 720, 80);

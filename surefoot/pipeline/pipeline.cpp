@@ -248,6 +248,8 @@ void Pipeline::see_coarsely() {
         return;
     }
     fine_.emplace(std::move(rectifier_), std::move(matcher_));
+    pair_ = {};  // both have the full size
+    depth_ = {};
     rectifier_ = std::make_unique<camera::Rectifier>(std::move(coarse).value());
     matcher_ = stereo::make_matcher(config_.stereo);
     odometry_ = odometry::Odometry(config_.odometry, *rectifier_, imu_mount_);
