@@ -378,10 +378,12 @@ void add_depth_accuracy(VerbGroup verbs) {
             "--size", o.size, "with --design: image size, in px (default: the image size of --rig)")
         .value("WIDTHxHEIGHT")
         .needs(design);
-    verb.option("--sigma",
-                o.sigma_px,
-                "with --design: standard deviation of a disparity, in px (default: 0.138, the "
-                "lower limit of the matcher of Surefoot)")
+    verb.option(
+            "--sigma",
+            o.sigma_px,
+            fmt::format("with --design: standard deviation of a disparity, in px (default: {:.3f}, "
+                        "the lower limit of the matcher of Surefoot)",
+                        stereo::kSigmaFloor_px))
         .value("PX")
         .needs(design);
     verb.option("--height",
