@@ -378,14 +378,11 @@ void add_depth_accuracy(VerbGroup verbs) {
             "--size", o.size, "with --design: image size, in px (default: the image size of --rig)")
         .value("WIDTHxHEIGHT")
         .needs(design);
-    verb.option(
-            "--sigma",
-            o.sigma_px,
-            fmt::format("with --design: standard deviation of a disparity, in px (default: {:.3f}, "
-                        "the lower limit of the matcher of Surefoot)",
-                        stereo::kSigmaFloor_px))
-        .value("PX")
-        .needs(design);
+    const std::string sigma_help = fmt::format(
+        "with --design: standard deviation of a disparity, in px (default: {:.3f}, the lower limit "
+        "of the matcher of Surefoot)",
+        stereo::kSigmaFloor_px);
+    verb.option("--sigma", o.sigma_px, sigma_help.c_str()).value("PX").needs(design);
     verb.option("--height",
                 o.height_m,
                 "with --design: height of the camera above the floor, in m (default 1)")
