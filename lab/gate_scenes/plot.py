@@ -15,6 +15,7 @@ GATE_SEED, GATE_SCENES = 77_001, 30_000  # scenes of each kind on maps
 GATE_RUNS = {"depth": (86_001, 3_000, "Maps of runs on analytic depth"),
              "images": (86_503, 300, "Maps of runs of the whole chain, from images of 672 x 376 px"),
              "large": (86_701, 300, "Maps of runs of the whole chain, from images of 1280 x 720 px")}
+EARLIER_MATCHER = "Maps of runs of the whole chain, from images of 672 x 376 px, with the matcher before the search from coarse to fine"
 GATE_KEPT = DOCS / "gate_runs.csv"  # results of hours, from more than one computer
 GATE_KEPT_MISSES = DOCS / "gate_runs_misses.csv"
 GATE_CURVE_SEEDS, GATE_CURVE_SCENES = range(21, 25), 50
@@ -61,8 +62,10 @@ def gate_runs(lab):
             lab.set_aside_older_results("gate_scenes", folder)
             run_gate_tier(lab, tier, folder, first_seed, wanted)
         keep_gate_runs(tier, folder)
-    for tier, (_, _, title) in GATE_RUNS.items():
-        rows = kept_gate_runs(tier)
+    tables = [(title, kept_gate_runs(tier, first)) for tier, (first, _, title) in GATE_RUNS.items()]
+    first_now = GATE_RUNS["images"][0]
+    tables.append((EARLIER_MATCHER, [row for row in kept_gate_runs("images") if int(row["seed"]) < first_now]))
+    for title, rows in tables:
         counts = collections.defaultdict(collections.Counter)
         for row in rows:
             counts[row["kind"], row["variant"]][row["what"]] += int(row["count"])
@@ -86,7 +89,7 @@ def gate_runs(lab):
 def run_gate_tier(lab, tier, folder, first_seed, wanted):
     """Runs half of the kinds on each of two cores."""
     mark = folder / "seed.txt"
-    others = [row for row in kept_gate_runs(tier) if not mark.exists() or row["seed"] != mark.read_text()]
+    others = [row for row in kept_gate_runs(tier, first_seed) if not mark.exists() or row["seed"] != mark.read_text()]
     if not mark.exists():
         mark.write_text(str(max([first_seed - 1, *(int(row["seed"]) for row in others)]) + 1))
     of_kind = collections.Counter()
@@ -102,8 +105,9 @@ def run_gate_tier(lab, tier, folder, first_seed, wanted):
             half.result()
 
 
-def kept_gate_runs(tier):
-    return [row for row in read(GATE_KEPT) if row["tier"] == tier] if GATE_KEPT.exists() else []
+def kept_gate_runs(tier, first_seed=0):
+    rows = read(GATE_KEPT) if GATE_KEPT.exists() else []
+    return [row for row in rows if row["tier"] == tier and int(row["seed"]) >= first_seed]
 
 
 def keep_gate_runs(tier, folder):
