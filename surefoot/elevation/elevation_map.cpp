@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/unknown.hpp"
 #include "surefoot/elevation/cell_row_blocks.hpp"
 #include "surefoot/elevation/fusion/reduce_cells.hpp"
@@ -122,9 +123,8 @@ FusionCounts ElevationMap::add(std::span<const DepthView> views,
         samples.pixel_ratio = static_cast<float>(ratio * ratio);
         // A larger image has more pixels of the same face.
         samples.reduction = config_.reduction;
-        // in range: describe() limits the setting, and a rig's focal lengths differ by a scale
         samples.reduction.min_face_points =
-            static_cast<int>(std::lround(ratio * ratio * config_.reduction.min_face_points));
+            saturated_integer<int>(std::round(ratio * ratio * config_.reduction.min_face_points));
     }
     const camera::RectifiedRig& rig = views.back().rig;
     const Eigen::Vector3d camera_m = (T_odom_body * rig.T_body_camera).translation_m;
