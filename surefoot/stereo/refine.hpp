@@ -12,7 +12,7 @@ namespace surefoot::stereo {
 struct RefineConfig {
     // Averages neighbours on the same surface over 41 x 9 pixels. Creases of the ground (nosings,
     // the feet of risers) run more along the rows than across them, so a wide window rounds them
-    // less than a high one. lab/matching.md compares sizes.
+    // less than a high one. docs/lab/matching.md compares sizes.
     int smooth_along_px = 20;      ///< radius along the row, at most 32
     int smooth_down_px = 4;        ///< radius down the column, at most 32
     double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
