@@ -36,17 +36,18 @@ def fine_ground(lab):
 
 
 def errors_table(reports, cases):
-    body = []
-    for scene, noise, images, more in cases:
-        runs = reports[scene, noise, images, more]
-        mean = lambda get: statistics.mean(get(report) for report in runs)  # noqa: B023, E731
-        error = lambda key: mean(lambda r: 1e3 * r["truth"]["elevation"][key])  # noqa: B023, E731
-        sigma = lambda k: mean(lambda r: 100 * r["truth"]["sigma"][f"within_{k}_sigma"])  # noqa: B023, E731
-        body.append([scene, noise, images, f"{error('median_abs_m'):.1f} mm", f"{error('p90_abs_m'):.1f} mm",
-                     f"{mean(lambda r: 100 * r['truth']['elevation']['share_over_50mm']):.1f} %", f"{mean(reaching_map):.0f} %",
-                     f"{sigma(1):.0f} / {sigma(3):.1f} %"])
+    body = [[*case[:3], *errors(reports[case])] for case in cases]
     return table(["scene", "noise", "images", "median error", "90 % error", "cells off by over 50 mm", "points that reach the map",
                   "within 1 / 3 sigma"], body)
+
+
+def errors(runs):
+    mean = lambda get: statistics.mean(get(report) for report in runs)  # noqa: E731
+    error = lambda key: mean(lambda r: 1e3 * r["truth"]["elevation"][key])  # noqa: E731
+    sigma = lambda k: mean(lambda r: 100 * r["truth"]["sigma"][f"within_{k}_sigma"])  # noqa: E731
+    return [f"{error('median_abs_m'):.1f} mm", f"{error('p90_abs_m'):.1f} mm",
+            f"{mean(lambda r: 100 * r['truth']['elevation']['share_over_50mm']):.1f} %", f"{mean(reaching_map):.0f} %",
+            f"{sigma(1):.0f} / {sigma(3):.1f} %"]
 
 
 def ranges_table(reports, cases):

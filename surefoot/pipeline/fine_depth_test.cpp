@@ -291,6 +291,15 @@ TEST(FineDepth, AtTheScaleOneEveryFrameIsWhole) {
     EXPECT_EQ(report.image_pixels, 672 * 376);
 }
 
+/// Depth of all pixels of FlatGround(1280, 720, 80).
+DepthImage whole_depth() {
+    DepthImage depth;
+    depth.disparity_px = Image<float>(1280, 720, 80.0F);
+    depth.sigma_px = Image<float>(1280, 720, 0.2F);
+    depth.outlier_probability = Image<float>(1280, 720, 0.0F);
+    return depth;
+}
+
 /// The depth of a frame that carries it belongs to the full image.
 TEST(FineDepth, KnownDepthKeepsItsSize) {
     const FlatGround ground(1280, 720, 80);
@@ -299,11 +308,7 @@ TEST(FineDepth, KnownDepthKeepsItsSize) {
     ASSERT_TRUE(pipeline.ok());
     StereoFrame first = ground.frame(0);
     first.left = first.right = {};
-    DepthImage depth;
-    depth.disparity_px = Image<float>(1280, 720, 80.0F);
-    depth.sigma_px = Image<float>(1280, 720, 0.2F);
-    depth.outlier_probability = Image<float>(1280, 720, 0.0F);
-    first.known_depth = depth;
+    first.known_depth = whole_depth();
     pipeline->align({&first, 1}, Pose{});
     EXPECT_EQ(pipeline->rig().width, 1280);
     const FrameReport report = pipeline->process(first, Work::full);
@@ -340,11 +345,7 @@ TEST(FineDepth, ASecondAlignmentUndoesTheFirst) {
     twice->align({&first, 1}, Pose{});
     auto after_depth = fresh();
     StereoFrame with_depth = first;
-    DepthImage depth;
-    depth.disparity_px = Image<float>(1280, 720, 80.0F);
-    depth.sigma_px = Image<float>(1280, 720, 0.2F);
-    depth.outlier_probability = Image<float>(1280, 720, 0.0F);
-    with_depth.known_depth = depth;
+    with_depth.known_depth = whole_depth();
     after_depth->align({&with_depth, 1}, Pose{});
     ASSERT_EQ(after_depth->rig().width, 1280);
     after_depth->align({&first, 1}, Pose{});
