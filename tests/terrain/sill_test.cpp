@@ -13,7 +13,8 @@
 namespace surefoot::terrain {
 namespace {
 
-constexpr int kFromAfar = 2;  ///< number of frames: ends 1.3 m before the sill
+constexpr int kAtFirst = 1;   ///< number of frames
+constexpr int kFromAfar = 2;  ///< ends 1.3 m before the sill
 constexpr int kNear = 7;      ///< ends half a metre nearer
 constexpr double kRate_hz = 2.0;
 
@@ -88,8 +89,10 @@ class SillInSight {
     std::unique_ptr<pipeline::Pipeline> pipeline_;
 };
 
+// Two frames resolve 3 of the 96 cells: their smallest step is 9.9 mm, and the mean height of the
+// sill is 10.2 mm.
 TEST(Sill, TenMillimetresUnderTheNoiseOfTheZedAreSaidToBeHidden) {
-    const auto said = SillInSight(sim::CameraProfile::zed, "sill_10", kFromAfar).ask(0.010);
+    const auto said = SillInSight(sim::CameraProfile::zed, "sill_10", kAtFirst).ask(0.010);
     EXPECT_GT(said.known, 90 * said.cells / 100);
     EXPECT_EQ(said.not_resolvable, said.known);
 }
