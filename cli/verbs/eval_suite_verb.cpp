@@ -47,13 +47,13 @@ Result<SuiteConditions> conditions_of(const EvalSuiteOptions& options) {
             "example rex");
     const double reach_m =
         options.quick ? std::min(options.reach_m, kQuickReach_m) : options.reach_m;
-    return SuiteConditions{std::move(*settings), machine->value().machine, reach_m};
+    return SuiteConditions{std::move(*settings), machine->value().machine, reach_m, options.rig};
 }
 
 /// Returns the hash of all conditions that determine the figures of a case, without the case
 /// itself.
 std::uint64_t conditions_hash(const EvalSuiteOptions& options, const SuiteConditions& conditions) {
-    return fnv1a(fmt::format("{} {}", options.machine, conditions.reach_m),
+    return fnv1a(fmt::format("{} {} {}", options.machine, conditions.reach_m, options.rig),
                  hash_of(conditions.settings));
 }
 
@@ -243,6 +243,12 @@ void add_eval_suite(VerbGroup verbs) {
                 s.camera,
                 "noise profile of the simulated camera (default zed: noise of a real ZED camera)")
         .one_of({"ideal", "zed", "euroc"});
+    suite
+        .option("--rig",
+                s.rig,
+                "rig of the simulated camera: a rig file, or the name of a built-in rig (default "
+                "zed_vga)")
+        .value("FILE|NAME");
     suite
         .option("--seeds",
                 s.seeds,

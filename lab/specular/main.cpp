@@ -52,12 +52,12 @@ struct Chain {
     }
     [[nodiscard]] app::VerdictCounts ask(const sim::SceneSource& source,
                                          const Machine& machine,
-                                         const Pose& T_world_body,
+                                         const StampedPose& here,
                                          double reach_m) const {
         const auto map = std::make_unique<grid::MapSnapshot>();
         // If the snapshot fails, it is not intact and the gate refuses it.
         [[maybe_unused]] const Status taken = pipeline->snapshot(0, *map);
-        return app::compare_verdicts(source.truth(), T_world_body, machine, *map, reach_m).counts;
+        return app::compare_verdicts(source.truth(), here, machine, *map, reach_m).counts;
     }
 };
 
@@ -123,13 +123,13 @@ Result<CaseResult> run_case(const std::string& scene,
         return input_error(scene + ": no frame was processed; check the scene's motion");
 
     CaseResult result;
-    Pose T_world_body;
+    StampedPose here;
     for (const StampedPose& pose : (*source)->truth().trajectory)
-        if (pose.time_ns <= last_ns) T_world_body = pose.T_world_body;
+        if (pose.time_ns <= last_ns) here = pose;
     for (int i = 0; i < 2; ++i) {
         const double reach_m = i == 0 ? 0.0 : kAround_m;
-        result.before[i] = without->ask(**source, machine, T_world_body, reach_m);
-        result.after[i] = with->ask(**source, machine, T_world_body, reach_m);
+        result.before[i] = without->ask(**source, machine, here, reach_m);
+        result.after[i] = with->ask(**source, machine, here, reach_m);
     }
     const auto panes = with->pipeline->panes();
     result.panes.assign(panes.begin(), panes.end());

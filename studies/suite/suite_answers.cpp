@@ -12,20 +12,33 @@
 namespace surefoot::app {
 namespace {
 
+struct Answers {
+    double asked = 0.0;    ///< number of questions
+    double allowed = 0.0;  ///< number of these questions with the answer OK
+
+    void add(double questions, double share) {
+        if (!(questions > 0.0)) return;
+        asked += questions;
+        allowed += questions * share;
+    }
+};
+
 /// Sums over a group of cases, with their wrong verdicts.
 struct Pool {
     int cases = 0;
-    double safe = 0.0;     ///< number of clear-cut safe movements
-    double allowed = 0.0;  ///< number of these movements that the gate allowed
+    Answers safe;  ///< clear-cut safe movements
+    Answers seen;  ///< those of them whose zone was in view on the way
     VerdictTallies tallies;
 
     void add(const SuiteResult& result) {
         ++cases;
         for (const VerdictTally& tally : result.tallies.all()) tallies.add(tally);
-        const double questions = result.figure("safe_questions");
-        if (!(questions > 0.0)) return;
-        safe += questions;
-        allowed += questions * result.figure("allowed");
+        safe.add(result.figure("safe_questions"), result.figure("allowed"));
+        seen.add(result.figure("seen_questions"), result.figure("allowed_of_seen"));
+    }
+    /// Returns the movements of which a tally counts refusals.
+    [[nodiscard]] const Answers& answers_of(TallyKey by) const {
+        return by == TallyKey::seen ? seen : safe;
     }
     [[nodiscard]] const VerdictTally* find(TallyKey by, const std::string& name) const {
         const auto& all = tallies.all();
@@ -35,6 +48,10 @@ struct Pool {
         return at == all.end() ? nullptr : &*at;
     }
 };
+
+double share_of(const Answers& answers) {
+    return answers.asked > 0.0 ? answers.allowed / answers.asked : std::nan("");
+}
 
 std::string percent(double part, double whole) {
     return whole > 0.0 ? fmt::format("{:.1f} %", 100.0 * part / whole) : "-";
@@ -60,8 +77,8 @@ eval::ReportBars bars_of(const Pool& pool, TallyKey by, std::string title) {
             by == TallyKey::danger
                 ? fmt::format("{} ({} as the only danger)", tally.named, tally.alone)
                 : fmt::format("named in {}, named alone in {}",
-                              percent(tally.named, pool.safe),
-                              percent(tally.alone, pool.safe));
+                              percent(tally.named, pool.answers_of(by).asked),
+                              percent(tally.alone, pool.answers_of(by).asked));
         bars.bars.push_back({name, static_cast<double>(tally.named), text});
     }
     std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const auto& a, const auto& b) {
@@ -75,7 +92,13 @@ eval::ReportBars bars_of(const Pool& pool, TallyKey by, std::string title) {
 double allowed_share(std::span<const SuiteResult> results) {
     Pool pool;
     for (const SuiteResult& result : results) pool.add(result);
-    return pool.safe > 0.0 ? pool.allowed / pool.safe : std::nan("");
+    return share_of(pool.safe);
+}
+
+double allowed_share_of_seen(std::span<const SuiteResult> results) {
+    Pool pool;
+    for (const SuiteResult& result : results) pool.add(result);
+    return share_of(pool.seen);
 }
 
 std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results) {
@@ -86,6 +109,10 @@ std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results)
         const std::string at = fmt::format("noise {}", times(noise));
         all.push_back(bars_of(
             pool, TallyKey::reason, "Reasons of the refusals of clearly safe movements, " + at));
+        all.push_back(bars_of(
+            pool,
+            TallyKey::seen,
+            "Reasons of the refusals of clearly safe movements that both cameras saw, " + at));
         all.push_back(
             bars_of(pool, TallyKey::proof, "Proofs that failed for clearly safe movements, " + at));
         all.push_back(bars_of(pool, TallyKey::danger, "Missed hazards, " + at));
@@ -93,36 +120,41 @@ std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results)
     return all;
 }
 
-eval::ReportTable refusal_table(std::span<const SuiteResult> results) {
+eval::ReportTable refusal_table(std::span<const SuiteResult> results, TallyKey by) {
     std::vector<std::string> reasons;
     std::map<std::pair<std::string, double>, Pool> rows;
     for (const SuiteResult& result : results) {
         rows[{result.which.scene, result.which.noise}].add(result);
         for (const VerdictTally& tally : result.tallies.all()) {
-            if (tally.by != TallyKey::reason) continue;
+            if (tally.by != by) continue;
             if (std::find(reasons.begin(), reasons.end(), tally.name) == reasons.end())
                 reasons.push_back(tally.name);
         }
     }
     std::sort(reasons.begin(), reasons.end());
+    const bool of_seen = by == TallyKey::seen;
     eval::ReportTable table;
-    table.title = "Reasons of the refusals of clearly safe movements";
-    table.hint =
-        "Share of the clearly safe movements at the end of the path whose verdict names this "
-        "reason. A verdict can name several reasons.";
+    table.title = of_seen
+                      ? "Reasons of the refusals of clearly safe movements that both cameras saw"
+                      : "Reasons of the refusals of clearly safe movements";
+    table.hint = fmt::format(
+        "Share of the clearly safe movements at the end of the path{} whose verdict names this "
+        "reason. A verdict can name several reasons.",
+        of_seen ? " whose feet, ways and drop bands both cameras saw on the way" : "");
     table.wide = true;
-    table.header = {"scene", "noise", "cases", "safe movements", "allowed"};
+    table.header = {"scene", "noise", "cases", "movements", "allowed"};
     for (const std::string& reason : reasons) table.header.push_back(words_of(reason));
     for (const auto& [key, pool] : rows) {
         const auto& [scene, noise] = key;
+        const Answers& answers = pool.answers_of(by);
         table.rows.push_back({scene,
                               times(noise),
                               std::to_string(pool.cases),
-                              fmt::format("{:.0f}", pool.safe),
-                              percent(pool.allowed, pool.safe)});
+                              fmt::format("{:.0f}", answers.asked),
+                              percent(answers.allowed, answers.asked)});
         for (const std::string& reason : reasons) {
-            const VerdictTally* tally = pool.find(TallyKey::reason, reason);
-            table.rows.back().push_back(tally ? percent(tally->named, pool.safe) : "");
+            const VerdictTally* tally = pool.find(by, reason);
+            table.rows.back().push_back(tally ? percent(tally->named, answers.asked) : "");
         }
     }
     return table;

@@ -12,12 +12,15 @@ namespace surefoot::app {
 /// Returns the share of the clear-cut safe movements that the gate allowed, over all cases. NaN =
 /// there are no such movements.
 [[nodiscard]] double allowed_share(std::span<const SuiteResult> results);
+/// As allowed_share(), for movements whose zone both cameras saw on the way (sim::SeenGround).
+[[nodiscard]] double allowed_share_of_seen(std::span<const SuiteResult> results);
 
-/// Returns three bar charts for every noise level: the reasons for refusing clear-cut safe
-/// movements, the proofs that failed for them, and the missed hazards.
+/// Returns four bar charts for every noise level: the reasons for refusing clear-cut safe
+/// movements, all and those in view, the proofs that failed for them, and the missed hazards.
 [[nodiscard]] std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results);
-/// Returns the reasons of the refusals by scene.
-[[nodiscard]] eval::ReportTable refusal_table(std::span<const SuiteResult> results);
+/// Returns the reasons of the refusals by scene. `by`: TallyKey::reason for all clear-cut safe
+/// movements, TallyKey::seen for those in view.
+[[nodiscard]] eval::ReportTable refusal_table(std::span<const SuiteResult> results, TallyKey by);
 
 /// Returns each step that a walking user requested, with the verdict and the truth.
 [[nodiscard]] eval::ReportTable step_table(std::span<const SuiteResult> results);

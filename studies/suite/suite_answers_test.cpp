@@ -20,6 +20,7 @@ gate::Verdict refused(std::initializer_list<gate::Reason> reasons,
     return verdict;
 }
 
+/// A tenth of the safe movements were in view, and the gate allowed three quarters of these.
 SuiteResult case_of(const std::string& scene, double noise, double safe, double allowed) {
     SuiteResult result;
     result.which = {scene, 1, noise, 0, 10.0, "trolley"};
@@ -27,19 +28,25 @@ SuiteResult case_of(const std::string& scene, double noise, double safe, double 
     for (std::size_t i = 0; i < suite_figures().size(); ++i) {
         if (suite_figures()[i].name == std::string("safe_questions")) result.figures[i] = safe;
         if (suite_figures()[i].name == std::string("allowed")) result.figures[i] = allowed;
+        if (suite_figures()[i].name == std::string("seen_questions"))
+            result.figures[i] = 0.1 * safe;
+        if (suite_figures()[i].name == std::string("allowed_of_seen")) result.figures[i] = 0.75;
     }
     return result;
 }
 
 TEST(VerdictTallies, CountEveryWordAndThoseThatStoodAlone) {
     VerdictTallies tallies;
-    tallies.add_refusal(refused({gate::Reason::not_resolvable}, {gate::Proof::left_supported}));
+    tallies.add_refusal(refused({gate::Reason::not_resolvable}, {gate::Proof::left_supported}),
+                        true);
     tallies.add_refusal(refused({gate::Reason::not_resolvable, gate::Reason::unknown_cells},
-                                {gate::Proof::left_supported, gate::Proof::body_clear}));
+                                {gate::Proof::left_supported, gate::Proof::body_clear}),
+                        false);
     const std::vector<VerdictTally> expected = {{TallyKey::reason, "NOT_RESOLVABLE", 2, 1},
                                                 {TallyKey::reason, "UNKNOWN_CELLS", 1, 0},
                                                 {TallyKey::proof, "body_clear", 1, 0},
-                                                {TallyKey::proof, "left_supported", 2, 1}};
+                                                {TallyKey::proof, "left_supported", 2, 1},
+                                                {TallyKey::seen, "NOT_RESOLVABLE", 1, 1}};
     EXPECT_EQ(tallies.all(), expected);
     VerdictTallies doubled = tallies;
     for (const VerdictTally& tally : expected) doubled.add(tally);
@@ -48,22 +55,42 @@ TEST(VerdictTallies, CountEveryWordAndThoseThatStoodAlone) {
     EXPECT_EQ(doubled.all()[3].alone, 2);
 }
 
+TEST(VerdictCounts, OnlySafeClearCutQuestionsInViewCountAsSeen) {
+    VerdictCounts counts;
+    counts.add(true, true, true, true);
+    counts.add(true, true, true, false);
+    counts.add(true, true, false, true);
+    counts.add(true, false, true, true);   // borderline
+    counts.add(false, true, true, false);  // dangerous
+    EXPECT_EQ(counts.safe, 3);
+    EXPECT_EQ(counts.safe_ok, 2);
+    EXPECT_EQ(counts.seen, 2);
+    EXPECT_EQ(counts.seen_ok, 1);
+}
+
 TEST(SuiteAnswers, SharesArePooledOverTheQuestionsNotOverTheCases) {
     std::vector<SuiteResult> results = {case_of("floor", 1.0, 300.0, 0.5),
                                         case_of("floor", 1.0, 100.0, 0.1),
                                         case_of("hole", 1.0, 0.0, std::nan(""))};
     EXPECT_DOUBLE_EQ(allowed_share(results), 0.4);
     EXPECT_TRUE(std::isnan(allowed_share({results.data() + 2, 1})));
+    EXPECT_DOUBLE_EQ(allowed_share_of_seen(results), 0.75);
+    EXPECT_TRUE(std::isnan(allowed_share_of_seen({results.data() + 2, 1})));
 
     results[0].tallies.add({TallyKey::reason, "NOT_RESOLVABLE", 100, 60});
     results[1].tallies.add({TallyKey::reason, "NOT_RESOLVABLE", 60, 20});
     results[2].tallies.add({TallyKey::danger, "drop_off", 2, 1});
-    const eval::ReportTable table = refusal_table(results);
+    const eval::ReportTable table = refusal_table(results, TallyKey::reason);
     ASSERT_EQ(table.rows.size(), 2U);
     EXPECT_EQ(table.header.back(), "NOT RESOLVABLE");
     EXPECT_EQ(table.rows[0],
               (std::vector<std::string>{"floor", "x 1", "2", "400", "40.0 %", "40.0 %"}));
     EXPECT_EQ(table.rows[1].back(), "");
+
+    results[0].tallies.add({TallyKey::seen, "ROUGHNESS", 6, 6});
+    const eval::ReportTable of_seen = refusal_table(results, TallyKey::seen);
+    EXPECT_EQ(of_seen.rows[0],
+              (std::vector<std::string>{"floor", "x 1", "2", "40", "75.0 %", "15.0 %"}));
 
     const std::vector<eval::ReportBars> bars = refusal_bars(results);
     const auto of_reason =

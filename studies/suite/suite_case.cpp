@@ -62,10 +62,14 @@ std::vector<double> figures_of(const RunRecord& record,
             static_cast<double>(around.unsafe_ok),
             static_cast<double>(around.borderline_missed),
             share(around.safe_ok, around.safe),
+            static_cast<double>(around.seen),
+            share(around.seen_ok, around.seen),
             static_cast<double>(asked.size()),
             among(steps.unsafe_ok, asked.size()),
             among(steps.borderline_missed, asked.size()),
-            share(steps.safe_ok, steps.safe)};
+            share(steps.safe_ok, steps.safe),
+            among(steps.seen, asked.size()),
+            share(steps.seen_ok, steps.seen)};
 }
 
 std::vector<std::uint8_t> thumbnail_of(const RunRecord& record,
@@ -101,9 +105,9 @@ class CaseRun {
                 ": the machine moved before the odom frame was set; start the run at standstill");
         }
         if (auto status = take_snapshot(); !status) return status.error();
-        const Pose T_world_body = source_.truth().trajectory[record.frames.size() - 1].T_world_body;
+        const StampedPose& here = source_.truth().trajectory[record.frames.size() - 1];
         const AroundAnswers around = compare_verdicts(
-            source_.truth(), T_world_body, conditions_.machine, *snapshot_, conditions_.reach_m);
+            source_.truth(), here, conditions_.machine, *snapshot_, conditions_.reach_m);
         for (const std::string& sentence : around.missed)
             log_warning(fmt::format("{}: {}", which.name(), sentence));
         return SuiteResult{which,
@@ -220,6 +224,12 @@ const std::vector<SuiteFigure>& suite_figures() {
          true,
          "allowed movements that are dangerous by less than the margin of the oracle"},
         {"allowed", "Gate", share, false, "allowed share of the clearly safe movements"},
+        {"seen_questions",
+         "Gate",
+         count,
+         false,
+         "clearly safe movements whose feet, ways and drop bands both cameras saw on the way"},
+        {"allowed_of_seen", "Gate", share, false, "allowed share of these movements"},
         {"steps", "Gate", count, false, "steps that the walking user requested"},
         {"steps_missed", "Gate", count, true, "clearly dangerous steps that the gate allowed"},
         {"steps_borderline_missed",
@@ -228,6 +238,12 @@ const std::vector<SuiteFigure>& suite_figures() {
          true,
          "allowed steps that are dangerous by less than the margin of the oracle"},
         {"steps_allowed", "Gate", share, false, "allowed share of the clearly safe steps"},
+        {"steps_seen",
+         "Gate",
+         count,
+         false,
+         "clearly safe steps whose feet, ways and drop bands both cameras saw on the way"},
+        {"steps_allowed_of_seen", "Gate", share, false, "allowed share of these steps"},
     };
     return all;
 }
@@ -258,7 +274,7 @@ bool is_worse(const SuiteResult& a, const SuiteResult& b) {
 Result<SuiteResult> run_suite_case(const SuiteCase& which, const SuiteConditions& conditions) {
     const Settings& settings = conditions.settings;
     SourceRequest request{
-        which.scene, "", which.rate_hz, which.max_frames, which.seed, settings.sim};
+        which.scene, conditions.rig, which.rate_hz, which.max_frames, which.seed, settings.sim};
     request.sim.noise *= which.noise;
     request.sim.motion_model = motion_model_choice(which.motion_model);
     Serial serial;

@@ -75,6 +75,7 @@ struct SuiteConditions {
     Settings settings;
     Machine machine;
     double reach_m = 0.8;  ///< largest distance of a queried pose from the last pose [m]
+    std::string rig;       ///< rig file, or one of sim::rig_presets(); empty = zed_vga
 };
 
 /// Simulates the case, runs the whole pipeline and compares the results with the truth, without

@@ -32,6 +32,7 @@ Json suite_steps_json(const std::vector<SuiteStep>& steps) {
                         {"command", step.command},
                         {"safe", step.safe},
                         {"clear_cut", step.clear_cut},
+                        {"seen", step.seen},
                         {"dangers", step.dangers},
                         {"decision", step.decision},
                         {"reasons", step.reasons}});

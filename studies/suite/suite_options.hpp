@@ -14,6 +14,7 @@ struct EvalSuiteOptions {
     std::string out_dir;
     std::string machine = "rex";
     std::string camera = "zed";       ///< camera profile, one of sim::kCameraProfileNames
+    std::string rig;                  ///< rig file, or one of sim::rig_presets(); empty = zed_vga
     std::vector<std::string> scenes;  ///< empty = all
     /// Motion models of the cases, each one of sim::kMotionModelChoiceNames.
     std::vector<std::string> motion_models = {"scene"};

@@ -97,6 +97,12 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
              "",
              fmt::format("of {:.0f} movements; the reasons of the refusals are listed below",
                          sum_of(of_level, "safe_questions"))});
+        content.figures.push_back(
+            {fmt::format("Clearly safe and seen movements allowed, noise {}", times(level.noise)),
+             shown(FigureKind::share, allowed_share_of_seen(of_level)),
+             "",
+             fmt::format("of {:.0f} movements whose feet, ways and drop bands both cameras saw",
+                         sum_of(of_level, "seen_questions"))});
     }
     if (allowed == 0.0) {
         content.reasons.push_back(
@@ -135,8 +141,10 @@ eval::ReportTable motion_model_table(std::span<const SuiteResult> results) {
                                              "false_safe",
                                              "missed_hazards",
                                              "allowed",
+                                             "allowed_of_seen",
                                              "steps_missed",
-                                             "steps_allowed"};
+                                             "steps_allowed",
+                                             "steps_allowed_of_seen"};
     eval::ReportTable table;
     table.title = "Figures by motion model";
     table.hint = "Median of all cases; the worst value in brackets.";
@@ -367,7 +375,8 @@ std::string suite_html(std::span<const SuiteResult> results, const std::string& 
     for (eval::ReportBars& bars : refusal_bars(results)) content.bars.push_back(std::move(bars));
     content.bars.push_back(step_bars(results));
     content.tables.push_back(motion_model_table(results));
-    content.tables.push_back(refusal_table(results));
+    for (const TallyKey by : {TallyKey::seen, TallyKey::reason})
+        content.tables.push_back(refusal_table(results, by));
     for (eval::ReportTable& table : group_tables(rows)) content.tables.push_back(std::move(table));
     for (const BinView& view : kBinViews) content.tables.push_back(bin_table(levels, view));
     content.tables.push_back(step_table(results));

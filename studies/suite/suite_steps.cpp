@@ -11,6 +11,7 @@
 #include "surefoot/core/time.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/sim/safety_oracle/safety_oracle.hpp"
+#include "surefoot/sim/safety_oracle/seen_ground.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -64,7 +65,8 @@ std::string joined(const gate::ReasonSet& reasons) {
 
 VerdictCounts count_verdicts(std::span<const SuiteStep> steps) {
     VerdictCounts counts;
-    for (const SuiteStep& step : steps) counts.add(step.safe, step.clear_cut, step.allowed());
+    for (const SuiteStep& step : steps)
+        counts.add(step.safe, step.clear_cut, step.seen, step.allowed());
     return counts;
 }
 
@@ -95,16 +97,33 @@ gate::Query StepQuestions::query_of(const sim::StepEvent& step, const grid::MapS
     return query;
 }
 
+bool StepQuestions::is_seen(const sim::StepEvent& step, const gate::Query& query) const {
+    const Eigen::Vector2d here_m = step.T_world_before.translation_m.head<2>();
+    sim::VouchedGround vouched;
+    if (query.attested.active) {
+        // The attestation was given before the first step. The machine has hardly drifted since.
+        vouched = {truth_.steps.front().T_world_before.translation_m.head<2>(),
+                   kTenthMm_m * query.attested.radius_tenth_mm};
+    }
+    Serial serial;
+    const sim::SeenGround seen(
+        truth_, truth_.start_ns + ns_from_seconds(step.start_s), machine_, here_m, 0.0, serial);
+    return seen.holds_zone(machine_, step.T_world_before, step.command, vouched);
+}
+
 void StepQuestions::ask(const grid::MapSnapshot& map) {
     const sim::StepEvent& event = truth_.steps[steps_.size()];
-    const gate::Verdict verdict = decide_offline(machine_, query_of(event, map), map);
+    const gate::Query query = query_of(event, map);
+    const gate::Verdict verdict = decide_offline(machine_, query, map);
     const sim::SafetyAnswer answer =
         sim::judge(truth_.scene, machine_, event.T_world_before, event.command);
+    const bool seen = answer.safe && is_seen(event, query);
     steps_.push_back({static_cast<int>(steps_.size()) + 1,
                       event.start_s,
                       event.command,
                       answer.safe,
                       answer.clear_cut,
+                      seen,
                       joined(answer),
                       gate::to_string(verdict.decision),
                       joined(verdict.reasons)});

@@ -23,6 +23,7 @@ struct SuiteStep {
     int command = 0;
     bool safe = false;       ///< true = the step is truly safe
     bool clear_cut = false;  ///< the truth holds by more than sim::SafetyMargin
+    bool seen = false;       ///< safe, and its zone was in view on the way (sim::SeenGround)
     std::string dangers;     ///< dangers of the step, joined by '|'; empty if safe
     std::string decision;    ///< "OK", "NOT_TRAVERSABLE" or "ERROR"
     std::string reasons;     ///< reasons of the gate, joined by '|'; empty for OK
@@ -51,6 +52,7 @@ class StepQuestions {
 
   private:
     [[nodiscard]] gate::Query query_of(const sim::StepEvent& step, const grid::MapSnapshot& map);
+    [[nodiscard]] bool is_seen(const sim::StepEvent& step, const gate::Query& query) const;
 
     const sim::SceneTruth& truth_;
     const Machine& machine_;

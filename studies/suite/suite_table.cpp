@@ -17,7 +17,7 @@ constexpr const char* kCaseHead = "scene,motion_model,seed,noise,max_frames";
 constexpr std::size_t kKeyColumns = 5;
 constexpr std::size_t kCaseColumns = 6;  ///< number of columns before the figures
 constexpr std::size_t kBinColumns = kKeyColumns + 8;
-constexpr std::size_t kStepColumns = kKeyColumns + 8;
+constexpr std::size_t kStepColumns = kKeyColumns + 9;
 constexpr std::size_t kTallyColumns = kKeyColumns + 4;
 
 using Words = std::vector<std::string_view>;
@@ -70,13 +70,14 @@ std::string bin_lines(const SuiteResult& result) {
 std::string step_lines(const SuiteResult& result) {
     std::string lines;
     for (const SuiteStep& step : result.steps) {
-        lines += fmt::format("{},{},{},{},{},{},{},{},{}\n",
+        lines += fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
                              key_of(result.which),
                              step.number,
                              step.time_s,
                              step.command,
                              step.safe ? 1 : 0,
                              step.clear_cut ? 1 : 0,
+                             step.seen ? 1 : 0,
                              or_dash(step.dangers),
                              step.decision,
                              or_dash(step.reasons));
@@ -150,9 +151,10 @@ std::optional<SuiteStep> parse_step(const Words& words) {
                      static_cast<int>(*command),
                      words[8] == "1",
                      words[9] == "1",
-                     from_dash(words[10]),
-                     std::string(words[11]),
-                     from_dash(words[12])};
+                     words[10] == "1",
+                     from_dash(words[11]),
+                     std::string(words[12]),
+                     from_dash(words[13])};
 }
 
 std::optional<VerdictTally> parse_tally(const Words& words) {
@@ -215,11 +217,12 @@ Result<SuiteTable> SuiteTable::open(const std::string& folder, std::uint64_t con
     const LineFile bins{
         folder + "/bins.csv",
         fmt::format("{}{},by,from,to,count,median_m,p90_m,p99_m,counts\n", first, kCaseHead)};
-    const LineFile steps{folder + "/steps.csv",
-                         fmt::format("{}{},step,time_s,command,safe,clear_cut,dangers,decision,"
-                                     "reasons\n",
-                                     first,
-                                     kCaseHead)};
+    const LineFile steps{
+        folder + "/steps.csv",
+        fmt::format("{}{},step,time_s,command,safe,clear_cut,seen,dangers,decision,"
+                    "reasons\n",
+                    first,
+                    kCaseHead)};
     const LineFile verdicts{folder + "/verdicts.csv",
                             fmt::format("{}{},by,name,named,alone\n", first, kCaseHead)};
     auto cases_file = cases.open([&](const Words& words) {

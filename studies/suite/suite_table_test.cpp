@@ -29,8 +29,9 @@ SuiteResult result_of(const std::string& scene, std::uint64_t seed, double noise
     result.which = {scene, seed, noise, 0, 4.0, "rex"};
     result.figures = std::vector<double>(suite_figures().size(), figure);
     result.bins = {bin_of(0.5, 0.01 * noise), bin_of(1.0, 0.02)};
-    result.steps = {{1, 1.5, 9, true, true, "", "OK", ""},
-                    {2, 11.5, 17, false, false, "drop_off|tilt", "NOT_TRAVERSABLE", "DROP_OFF"}};
+    result.steps = {
+        {1, 1.5, 9, true, true, true, "", "OK", ""},
+        {2, 11.5, 17, false, false, false, "drop_off|tilt", "NOT_TRAVERSABLE", "DROP_OFF"}};
     result.tallies.add({TallyKey::reason, "UNKNOWN_CELLS", 7, 4});
     result.tallies.add({TallyKey::danger, "drop_off", 1, 1});
     return result;

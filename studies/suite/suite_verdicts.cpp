@@ -10,10 +10,12 @@
 #include <tuple>
 #include <vector>
 
+#include "service/live/ground_box.hpp"
 #include "studies/runs/offline_map.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/sim/safety_oracle/safety_oracle.hpp"
+#include "surefoot/sim/safety_oracle/seen_ground.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -57,10 +59,11 @@ std::vector<Stance> stances_around(const Pose& T_world_body,
     return stances;
 }
 
-gate::Verdict ask(const Machine& machine,
-                  const grid::MapSnapshot& map,
-                  const Stance& stance,
-                  int command) {
+/// Returns the question, with an attestation for the ground under the standing feet.
+gate::Query query_of(const Machine& machine,
+                     const grid::MapSnapshot& map,
+                     const Stance& stance,
+                     int command) {
     gate::Query query = gate::make_query(static_cast<std::uint8_t>(command),
                                          stance.x_odom_m,
                                          stance.y_odom_m,
@@ -68,7 +71,7 @@ gate::Verdict ask(const Machine& machine,
                                          std::sin(stance.yaw_odom_rad));
     std::vector<std::string> assumed;
     if (const auto area = attest_start(machine, query, map, -1.0, assumed)) query.attested = *area;
-    return decide_offline(machine, query, map);
+    return query;
 }
 
 std::vector<std::string_view> names_of(const sim::SafetyAnswer& answer) {
@@ -96,7 +99,7 @@ std::string missed_sentence(const Stance& stance, int command, const sim::Safety
 
 }  // namespace
 
-void VerdictCounts::add(bool truly_safe, bool clear_cut, bool allowed) {
+void VerdictCounts::add(bool truly_safe, bool clear_cut, bool in_view, bool allowed) {
     if (!clear_cut) {
         ++borderline;
         borderline_ok += allowed ? 1 : 0;
@@ -104,6 +107,8 @@ void VerdictCounts::add(bool truly_safe, bool clear_cut, bool allowed) {
     } else if (truly_safe) {
         ++safe;
         safe_ok += allowed ? 1 : 0;
+        seen += in_view ? 1 : 0;
+        seen_ok += in_view && allowed ? 1 : 0;
     } else {
         ++unsafe;
         unsafe_ok += allowed ? 1 : 0;
@@ -121,13 +126,14 @@ void VerdictTallies::add(const VerdictTally& tally) {
     known.alone += tally.alone;
 }
 
-void VerdictTallies::add_refusal(const gate::Verdict& verdict) {
+void VerdictTallies::add_refusal(const gate::Verdict& verdict, bool seen) {
     std::vector<std::string_view> words;
     for (int i = 0; i < gate::kReasonCount; ++i) {
         const auto reason = static_cast<gate::Reason>(i);
         if (verdict.reasons.contains(reason)) words.emplace_back(gate::to_string(reason));
     }
     add(TallyKey::reason, words);
+    if (seen) add(TallyKey::seen, words);
     words.clear();
     for (int i = 0; i < static_cast<int>(gate::Proof::count); ++i) {
         const auto proof = static_cast<gate::Proof>(i);
@@ -146,12 +152,15 @@ VerdictTally& VerdictTallies::of(TallyKey by, std::string_view name) {
 }
 
 AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
-                               const Pose& T_world_body_true,
+                               const StampedPose& here,
                                const Machine& machine,
                                const grid::MapSnapshot& map,
                                double reach_m) {
     AroundAnswers answers;
-    for (const Stance& stance : stances_around(T_world_body_true, map, reach_m)) {
+    Serial serial;
+    const sim::SeenGround seen(
+        truth, here.time_ns, machine, here.T_world_body.translation_m.head<2>(), reach_m, serial);
+    for (const Stance& stance : stances_around(here.T_world_body, map, reach_m)) {
         for (int command = 1; command < Machine::kMovementCodes; ++command) {
             if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
             const sim::SafetyAnswer answer =
@@ -159,12 +168,19 @@ AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
             // Skips poses at which the machine cannot stand.
             if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
                 continue;
-            const gate::Verdict verdict = ask(machine, map, stance, command);
+            const gate::Query query = query_of(machine, map, stance, command);
+            const gate::Verdict verdict = decide_offline(machine, query, map);
             const bool ok = verdict.decision == gate::Decision::ok;
-            answers.counts.add(answer.safe, answer.clear_cut, ok);
+            const bool in_view =
+                answer.safe && seen.holds_zone(machine,
+                                               stance.T_world_body,
+                                               command,
+                                               {stance.T_world_body.translation_m.head<2>(),
+                                                kTenthMm_m * query.attested.radius_tenth_mm});
+            answers.counts.add(answer.safe, answer.clear_cut, in_view, ok);
             if (!answer.clear_cut || answer.safe == ok) continue;
             if (answer.safe) {
-                answers.tallies.add_refusal(verdict);
+                answers.tallies.add_refusal(verdict, in_view);
                 continue;
             }
             answers.tallies.add(TallyKey::danger, names_of(answer));

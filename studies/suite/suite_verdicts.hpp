@@ -20,14 +20,16 @@ namespace surefoot::app {
 struct VerdictCounts {
     int safe = 0;               ///< clear-cut questions whose true answer is "safe"
     int safe_ok = 0;            ///< clear-cut safe questions with the answer OK
+    int seen = 0;               ///< clear-cut safe questions whose zone was in view on the way
+    int seen_ok = 0;            ///< such questions with the answer OK
     int unsafe = 0;             ///< clear-cut questions that are truly dangerous
     int unsafe_ok = 0;          ///< clear-cut dangerous questions with OK: the missed hazards
     int borderline = 0;         ///< borderline questions (not clear-cut)
     int borderline_ok = 0;      ///< borderline questions with the answer OK
     int borderline_missed = 0;  ///< borderline questions with OK although truly dangerous
 
-    /// Counts one question.
-    void add(bool truly_safe, bool clear_cut, bool allowed);
+    /// Counts one question. `seen`: both cameras saw the zone of the movement (sim::SeenGround).
+    void add(bool truly_safe, bool clear_cut, bool seen, bool allowed);
 };
 
 /// Kind of name by which wrong verdicts are counted.
@@ -35,8 +37,9 @@ enum class TallyKey : std::uint8_t {
     reason,  ///< refused clear-cut safe movements, by the reasons of the gate
     proof,   ///< refused clear-cut safe movements, by the proofs that failed
     danger,  ///< missed hazards, by the true danger
+    seen,    ///< like `reason`, for movements whose zone was in view on the way (sim::SeenGround)
 };
-inline constexpr const char* kTallyKeyNames[] = {"reason", "proof", "danger"};
+inline constexpr const char* kTallyKeyNames[] = {"reason", "proof", "danger", "seen_reason"};
 
 /// Numbers of wrong verdicts with one name.
 struct VerdictTally {
@@ -55,7 +58,7 @@ class VerdictTallies {
     void add(TallyKey by, std::span<const std::string_view> words);
     void add(const VerdictTally& tally);
     /// Counts a refusal under its reasons and under the proofs that failed.
-    void add_refusal(const gate::Verdict& verdict);
+    void add_refusal(const gate::Verdict& verdict, bool seen);
     [[nodiscard]] const std::vector<VerdictTally>& all() const noexcept { return all_; }
 
   private:
@@ -73,9 +76,10 @@ struct AroundAnswers {
 
 /// Asks the gate about every movement of the machine at its present pose and at poses around it,
 /// where the machine can stand: 0.2 m apart, within `reach_m`, with the present yaw. An operator
-/// attestation covers unmeasured ground under the standing feet, as in attest_start().
+/// attestation covers unmeasured ground under the standing feet, as in attest_start(). `here`: true
+/// pose of the machine at the last frame of the map.
 [[nodiscard]] AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
-                                             const Pose& T_world_body_true,
+                                             const StampedPose& here,
                                              const Machine& machine,
                                              const grid::MapSnapshot& map,
                                              double reach_m);

@@ -21,6 +21,14 @@ Rect rect_of(const GroundBox& box) {
 
 }  // namespace
 
+const Movement* movement_of(const Machine& machine, int command) {
+    if (command < 0 || command >= Machine::kMovementCodes) return nullptr;
+    const Movement& movement = machine.movements[static_cast<std::size_t>(command)];
+    const auto movement_class = static_cast<std::size_t>(movement.movement_class);
+    const bool enabled = machine.limits.step[movement_class].enabled;
+    return movement.configured && enabled ? &movement : nullptr;
+}
+
 Figures figures_of(const Machine& machine, const Movement& movement) {
     const GateLimits& limits = machine.limits;
     const StepLimits& step = limits.step[static_cast<std::size_t>(movement.movement_class)];

@@ -35,6 +35,9 @@ struct Figures {
     double band_m = 0.0;
     PlanarPose T_start_target;
 };
+/// Returns nullptr if the machine has no such movement, or if the class of the movement is
+/// disabled.
+[[nodiscard]] const Movement* movement_of(const Machine& machine, int command);
 [[nodiscard]] Figures figures_of(const Machine& machine, const Movement& movement);
 
 /// Multiplies limits by 1 - share: stricter for share > 0, looser for share < 0. Required distances

@@ -42,14 +42,6 @@ SafetyAnswer refused(Danger danger, const Eigen::Vector3d& where_m) {
     return answer;
 }
 
-const Movement* movement_of(const Machine& machine, int command) {
-    if (command < 0 || command >= Machine::kMovementCodes) return nullptr;
-    const Movement& movement = machine.movements[static_cast<std::size_t>(command)];
-    const auto movement_class = static_cast<std::size_t>(movement.movement_class);
-    const bool enabled = machine.limits.step[movement_class].enabled;
-    return movement.configured && enabled ? &movement : nullptr;
-}
-
 /// Returns the stance before the movement. It is unknown if the ground differs from the height of
 /// the soles by more than the body's lower edge.
 rules::Stance stance_here(const Scene& scene,
@@ -164,7 +156,7 @@ SafetyAnswer judge(const Scene& scene,
     SUREFOOT_ASSERT(machine.problem() == nullptr);
     if (!T_world_body.all_finite()) return refused(Danger::unknown_pose, Eigen::Vector3d::Zero());
     const Eigen::Vector3d& here_m = T_world_body.translation_m;
-    const Movement* movement = movement_of(machine, command);
+    const Movement* movement = rules::movement_of(machine, command);
     if (movement == nullptr) return refused(Danger::unknown_command, here_m);
 
     const Figures figures = rules::figures_of(machine, *movement);
