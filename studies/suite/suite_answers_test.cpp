@@ -57,15 +57,17 @@ TEST(VerdictTallies, CountEveryWordAndThoseThatStoodAlone) {
 
 TEST(VerdictCounts, OnlySafeClearCutQuestionsInViewCountAsSeen) {
     VerdictCounts counts;
-    counts.add(true, true, true, true);
-    counts.add(true, true, true, false);
-    counts.add(true, true, false, true);
-    counts.add(true, false, true, true);   // borderline
-    counts.add(false, true, true, false);  // dangerous
+    counts.add(true, true, InView::with_body, true);
+    counts.add(true, true, InView::zone, false);
+    counts.add(true, true, InView::none, true);
+    counts.add(true, false, InView::with_body, true);  // borderline
+    counts.add(false, true, InView::zone, false);      // dangerous
     EXPECT_EQ(counts.safe, 3);
     EXPECT_EQ(counts.safe_ok, 2);
     EXPECT_EQ(counts.seen, 2);
     EXPECT_EQ(counts.seen_ok, 1);
+    EXPECT_EQ(counts.body_seen, 1);
+    EXPECT_EQ(counts.body_seen_ok, 1);
 }
 
 TEST(SuiteAnswers, SharesArePooledOverTheQuestionsNotOverTheCases) {

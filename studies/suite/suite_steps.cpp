@@ -66,7 +66,8 @@ std::string joined(const gate::ReasonSet& reasons) {
 VerdictCounts count_verdicts(std::span<const SuiteStep> steps) {
     VerdictCounts counts;
     for (const SuiteStep& step : steps)
-        counts.add(step.safe, step.clear_cut, step.seen, step.allowed());
+        counts.add(
+            step.safe, step.clear_cut, step.seen ? InView::zone : InView::none, step.allowed());
     return counts;
 }
 

@@ -12,9 +12,7 @@
 
 #include "service/live/ground_box.hpp"
 #include "studies/runs/offline_map.hpp"
-#include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/whole_cells.hpp"
-#include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 #include "surefoot/sim/safety_oracle/seen_ground.hpp"
 
 namespace surefoot::app {
@@ -81,17 +79,17 @@ std::vector<std::string_view> names_of(const sim::SafetyAnswer& answer) {
     return names;
 }
 
-std::string missed_sentence(const Stance& stance, int command, const sim::SafetyAnswer& answer) {
-    const Eigen::Vector3d& at = stance.T_world_body.translation_m;
-    const Eigen::Vector3d& where = answer.dangers.front().where_m;
+std::string missed_sentence(const GateQuestion& question) {
+    const Eigen::Vector3d& at = question.T_world_body.translation_m;
+    const Eigen::Vector3d& where = question.truth.dangers.front().where_m;
     return fmt::format(
         "the dangerous movement {} from ({:.2f}, {:.2f}) m, yaw {:.2f} rad, was allowed: {} "
         "(danger at {:.3f}, {:.3f}, {:.3f} m)",
-        command,
+        question.query.command,
         at.x(),
         at.y(),
-        yaw_of(stance.T_world_body),
-        answer.sentence(),
+        yaw_of(question.T_world_body),
+        question.truth.sentence(),
         where.x(),
         where.y(),
         where.z());
@@ -99,7 +97,7 @@ std::string missed_sentence(const Stance& stance, int command, const sim::Safety
 
 }  // namespace
 
-void VerdictCounts::add(bool truly_safe, bool clear_cut, bool in_view, bool allowed) {
+void VerdictCounts::add(bool truly_safe, bool clear_cut, InView in_view, bool allowed) {
     if (!clear_cut) {
         ++borderline;
         borderline_ok += allowed ? 1 : 0;
@@ -107,8 +105,10 @@ void VerdictCounts::add(bool truly_safe, bool clear_cut, bool in_view, bool allo
     } else if (truly_safe) {
         ++safe;
         safe_ok += allowed ? 1 : 0;
-        seen += in_view ? 1 : 0;
-        seen_ok += in_view && allowed ? 1 : 0;
+        seen += in_view != InView::none ? 1 : 0;
+        seen_ok += in_view != InView::none && allowed ? 1 : 0;
+        body_seen += in_view == InView::with_body ? 1 : 0;
+        body_seen_ok += in_view == InView::with_body && allowed ? 1 : 0;
     } else {
         ++unsafe;
         unsafe_ok += allowed ? 1 : 0;
@@ -151,41 +151,56 @@ VerdictTally& VerdictTallies::of(TallyKey by, std::string_view name) {
     return *all_.insert(at, {by, std::string(name), 0, 0});
 }
 
+std::vector<GateQuestion> questions_around(const sim::SceneTruth& truth,
+                                           const StampedPose& here,
+                                           const Machine& machine,
+                                           const grid::MapSnapshot& map,
+                                           double reach_m) {
+    Serial serial;
+    const sim::SeenGround ground(
+        truth, here.time_ns, machine, here.T_world_body.translation_m.head<2>(), reach_m, serial);
+    std::vector<GateQuestion> questions;
+    for (const Stance& stance : stances_around(here.T_world_body, map, reach_m)) {
+        const Pose& T_world_body = stance.T_world_body;
+        for (int command = 1; command < Machine::kMovementCodes; ++command) {
+            if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
+            sim::SafetyAnswer answer = sim::judge(truth.scene, machine, T_world_body, command);
+            // Skips poses at which the machine cannot stand.
+            if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
+                continue;
+            const gate::Query query = query_of(machine, map, stance, command);
+            const sim::VouchedGround vouched{T_world_body.translation_m.head<2>(),
+                                             kTenthMm_m * query.attested.radius_tenth_mm};
+            InView in_view = InView::none;
+            if (answer.safe && ground.holds_zone(machine, T_world_body, command, vouched)) {
+                in_view = ground.holds_body(machine, T_world_body, command, vouched)
+                              ? InView::with_body
+                              : InView::zone;
+            }
+            questions.push_back({query, T_world_body, in_view, std::move(answer)});
+        }
+    }
+    return questions;
+}
+
 AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
                                const StampedPose& here,
                                const Machine& machine,
                                const grid::MapSnapshot& map,
                                double reach_m) {
     AroundAnswers answers;
-    Serial serial;
-    const sim::SeenGround seen(
-        truth, here.time_ns, machine, here.T_world_body.translation_m.head<2>(), reach_m, serial);
-    for (const Stance& stance : stances_around(here.T_world_body, map, reach_m)) {
-        for (int command = 1; command < Machine::kMovementCodes; ++command) {
-            if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
-            const sim::SafetyAnswer answer =
-                sim::judge(truth.scene, machine, stance.T_world_body, command);
-            // Skips poses at which the machine cannot stand.
-            if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
-                continue;
-            const gate::Query query = query_of(machine, map, stance, command);
-            const gate::Verdict verdict = decide_offline(machine, query, map);
-            const bool ok = verdict.decision == gate::Decision::ok;
-            const bool in_view =
-                answer.safe && seen.holds_zone(machine,
-                                               stance.T_world_body,
-                                               command,
-                                               {stance.T_world_body.translation_m.head<2>(),
-                                                kTenthMm_m * query.attested.radius_tenth_mm});
-            answers.counts.add(answer.safe, answer.clear_cut, in_view, ok);
-            if (!answer.clear_cut || answer.safe == ok) continue;
-            if (answer.safe) {
-                answers.tallies.add_refusal(verdict, in_view);
-                continue;
-            }
-            answers.tallies.add(TallyKey::danger, names_of(answer));
-            answers.missed.push_back(missed_sentence(stance, command, answer));
+    for (const GateQuestion& question : questions_around(truth, here, machine, map, reach_m)) {
+        const sim::SafetyAnswer& answer = question.truth;
+        const gate::Verdict verdict = decide_offline(machine, question.query, map);
+        const bool ok = verdict.decision == gate::Decision::ok;
+        answers.counts.add(answer.safe, answer.clear_cut, question.in_view, ok);
+        if (!answer.clear_cut || answer.safe == ok) continue;
+        if (answer.safe) {
+            answers.tallies.add_refusal(verdict, question.in_view != InView::none);
+            continue;
         }
+        answers.tallies.add(TallyKey::danger, names_of(answer));
+        answers.missed.push_back(missed_sentence(question));
     }
     return answers;
 }

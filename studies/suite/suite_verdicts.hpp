@@ -8,11 +8,19 @@
 #include <vector>
 
 #include "surefoot/core/machine.hpp"
-#include "surefoot/gate/verdict.hpp"
+#include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 #include "surefoot/sim/scenes/truth.hpp"
 
 namespace surefoot::app {
+
+/// The part of a movement's ground that both cameras saw on the way (sim::SeenGround).
+enum class InView : std::uint8_t {
+    none,
+    zone,      ///< feet, ways and drop bands
+    with_body  ///< these, and the ground below the space that the body enters
+};
 
 /// Compares the gate's verdicts with the truth. A question is borderline if its truth changes
 /// within the margin of a good map (see sim::SafetyMargin). Borderline questions are counted
@@ -22,14 +30,16 @@ struct VerdictCounts {
     int safe_ok = 0;            ///< clear-cut safe questions with the answer OK
     int seen = 0;               ///< clear-cut safe questions whose zone was in view on the way
     int seen_ok = 0;            ///< such questions with the answer OK
+    int body_seen = 0;          ///< of `seen`: also the ground below the body was in view
+    int body_seen_ok = 0;       ///< such questions with the answer OK
     int unsafe = 0;             ///< clear-cut questions that are truly dangerous
     int unsafe_ok = 0;          ///< clear-cut dangerous questions with OK: the missed hazards
     int borderline = 0;         ///< borderline questions (not clear-cut)
     int borderline_ok = 0;      ///< borderline questions with the answer OK
     int borderline_missed = 0;  ///< borderline questions with OK although truly dangerous
 
-    /// Counts one question. `seen`: both cameras saw the zone of the movement (sim::SeenGround).
-    void add(bool truly_safe, bool clear_cut, bool seen, bool allowed);
+    /// Counts one question.
+    void add(bool truly_safe, bool clear_cut, InView in_view, bool allowed);
 };
 
 /// Kind of name by which wrong verdicts are counted.
@@ -67,17 +77,30 @@ class VerdictTallies {
     std::vector<VerdictTally> all_;
 };
 
-/// Result of asking about all movements around one pose.
+/// A question to the gate, and its true answer.
+struct GateQuestion {
+    gate::Query query;              ///< with an attestation for the ground under the standing feet
+    Pose T_world_body;              ///< true pose of base_link
+    InView in_view = InView::none;  ///< none if the movement is dangerous
+    sim::SafetyAnswer truth;
+};
+/// Returns a question for every movement of the machine at its present pose and at poses around it,
+/// where the machine can stand: 0.2 m apart, within `reach_m`, with the present yaw. An operator
+/// attestation covers unmeasured ground under the standing feet, as in attest_start(). `here`: true
+/// pose of the machine at the last frame of the map.
+[[nodiscard]] std::vector<GateQuestion> questions_around(const sim::SceneTruth& truth,
+                                                         const StampedPose& here,
+                                                         const Machine& machine,
+                                                         const grid::MapSnapshot& map,
+                                                         double reach_m);
+
+/// The gate's answers to all questions around one pose.
 struct AroundAnswers {
     VerdictCounts counts;
     VerdictTallies tallies;
     std::vector<std::string> missed;  ///< one sentence for each clear-cut missed hazard
 };
-
-/// Asks the gate about every movement of the machine at its present pose and at poses around it,
-/// where the machine can stand: 0.2 m apart, within `reach_m`, with the present yaw. An operator
-/// attestation covers unmeasured ground under the standing feet, as in attest_start(). `here`: true
-/// pose of the machine at the last frame of the map.
+/// Asks the gate questions_around() the pose `here`.
 [[nodiscard]] AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
                                              const StampedPose& here,
                                              const Machine& machine,

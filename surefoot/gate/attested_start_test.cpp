@@ -44,7 +44,7 @@ TEST_F(AttestedStart, lets_the_first_step_go_onto_remembered_floor_and_says_so) 
 TEST_F(AttestedStart, is_void_outside_and_too_small_where_it_does_not_reach) {
     // All unknown ground lies in the area, but base_link has just left it.
     Terrain spot;
-    spot.box(-0.35, -0.25, -0.05, 0.05, static_cast<double>(kNanF));
+    spot.box(-0.12, -0.05, 0.12, 0.17, static_cast<double>(kNanF));
     map = spot.snapshot();
     query.attested = {true, -6000, 0, 6000, 0};
     expect_ok(ask_now());

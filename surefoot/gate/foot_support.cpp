@@ -12,7 +12,7 @@ namespace {
 using grid::FixedPoint;
 
 /// Exact sums over cells, in units of 0.1 mm. x and y are doubled coordinates from the middle of
-/// the foot. z is the height above the stance.
+/// the foot. z is the height above the plane of the stance.
 struct Sums {
     std::int64_t n = 0;
     std::int64_t x = 0, y = 0, z = 0;
@@ -64,9 +64,12 @@ struct FootPlane {
     [[nodiscard]] double at(double x, double y) const noexcept {
         return height + slope_x * (x - mean_x) + slope_y * (y - mean_y);
     }
-    /// Squared tangent of the tilt; the factor accounts for the doubled coordinates.
-    [[nodiscard]] double tilt_tan_sq() const noexcept {
-        return 4.0 * (slope_x * slope_x + slope_y * slope_y);
+    /// Squared tangent of the tilt against odom's z axis; the heights of the plane count from a
+    /// plane with the slopes `below`. The factor 2 accounts for the doubled coordinates.
+    [[nodiscard]] double tilt_tan_sq(const StancePlane::Tangents& below) const noexcept {
+        const double x = 2.0 * slope_x + below.x;
+        const double y = 2.0 * slope_y + below.y;
+        return x * x + y * y;
     }
 };
 
@@ -196,17 +199,17 @@ void check_step(const Landing& landing) noexcept {
     check_rise(limits, landing.at(0.0, 0.0, rise, 0), landing.findings);
     // Also tests the rise of this foot alone. If one foot stands above the mean of both feet and
     // the other foot below, the height of one foot could change by twice the limit.
-    const Scene& scene = landing.scene;
-    const auto stood = scene.foot_stance_tenth_mm[landing.foot.foot == Foot::left ? 0 : 1];
-    if (!stood) return;
-    const std::int64_t own = rise + scene.stance_tenth_mm - *stood;
-    check_rise(limits, landing.at(0.0, 0.0, own, 0), landing.findings);
+    const auto& feet = landing.scene.stance.feet_tenth_mm;
+    const auto stood = feet[landing.foot.foot == Foot::left ? 0 : 1];
+    if (stood) check_rise(limits, landing.at(0.0, 0.0, rise - *stood, 0), landing.findings);
 }
 
 /// Tests the tilt limit. Returns false if it denies, like check_patch().
 bool check_tilt(const Landing& landing) noexcept {
+    const Ground& ground = landing.scene.ground;
+    const auto below = landing.scene.stance.plane.tangents(ground.grid().side);
     const double tan_sq =
-        steepest_tan_sq(landing.plane.tilt_tan_sq(), landing.scene.ground.vertical_bound_tan());
+        steepest_tan_sq(landing.plane.tilt_tan_sq(below), ground.vertical_bound_tan());
     Evidence& evidence = landing.findings.evidence;
     evidence.max_tilt_tan_sq = std::max(evidence.max_tilt_tan_sq, tan_sq);
     if (keeps_tilt_limit(tan_sq, landing.scene.machine.limits)) return true;
@@ -262,10 +265,11 @@ struct FootCells {
         all.add(p, height);
         patches.add(p, height, sigma);
     }
-    void add_extreme(Finding here, std::int64_t height) noexcept {
-        here.value_tenth_mm = height;
-        if (grounds == 0 || height < lowest.value_tenth_mm) lowest = here;
-        if (grounds == 0 || height > highest.value_tenth_mm) highest = here;
+    void add_extreme(Finding here, std::int64_t low, std::int64_t high) noexcept {
+        here.value_tenth_mm = low;
+        if (grounds == 0 || low < lowest.value_tenth_mm) lowest = here;
+        here.value_tenth_mm = high;
+        if (grounds == 0 || high > highest.value_tenth_mm) highest = here;
         ++grounds;
     }
 };
@@ -286,9 +290,10 @@ bool stands_alone(const Scene& scene,
     const GateLimits& limits = scene.machine.limits;
     if (kept(rise) || rise > limits.swing_clearance_tenth_mm || -rise > limits.drop_tenth_mm)
         return false;
-    return scene.ground.all_around(ix, iy, [&](const GroundCell& beside) {
-        return kept(beside.height_tenth_mm - scene.stance_tenth_mm);
-    });
+    return scene.ground.all_around(
+        ix, iy, [&](const GroundCell& beside, std::int64_t x, std::int64_t y) {
+            return kept(beside.height_tenth_mm - scene.stance.plane.at(x, y));
+        });
 }
 
 /// Adds all cells under the foot. Returns false if a cell is unknown: then no plane exists.
@@ -308,15 +313,20 @@ bool gather_cells(const Scene& scene,
             if (cell.knowledge == Knowledge::measured && !reachable.contains(cell.component))
                 findings.deny(Reason::disconnected, here);
             // Other rules refuse heights above 3 m. The clamp keeps the sums exact.
-            const std::int64_t height = std::clamp<std::int64_t>(
-                cell.height_tenth_mm - scene.stance_tenth_mm, -30'000, 30'000);
+            const auto above = [&](const StancePlane& plane) {
+                return std::clamp<std::int64_t>(
+                    cell.height_tenth_mm - plane.at(ix, iy), -30'000, 30'000);
+            };
+            const std::int64_t height = above(scene.stance.plane);
+            // Where the stance slopes less surely than it seems to, both planes must agree.
+            const std::int64_t likely = above(scene.stance.median_plane);
             cells.add(scene.ground.doubled_center(ix, iy, foot.landing_center),
                       height,
                       cell.sigma_tenth_mm);
             if (!cells.has_pebble && stands_alone(scene, ix, iy, height))
                 cells.has_pebble = true;
             else
-                cells.add_extreme(here, height);
+                cells.add_extreme(here, std::min(height, likely), std::max(height, likely));
             return true;
         });
 }

@@ -40,8 +40,11 @@ struct FootOnGround {
     [[nodiscard]] Findings look() const {
         const Sweep all = sweep();
         const Ground ground(*map, query, machine.limits);
-        const Scene scene{
-            machine, machine.movements[query.command], ground, all, query.stance_height_tenth_mm};
+        const Scene scene{machine,
+                          machine.movements[query.command],
+                          ground,
+                          all,
+                          Stance::level_at(query.stance_height_tenth_mm)};
         ReachableSurfaces reachable;
         reachable.add(1);
         Findings findings;

@@ -44,20 +44,30 @@ grid::FixedConvex hull_of(const Corners& a, const Corners& b) noexcept {
     return grid::convex_hull(points);
 }
 
+/// Returns the region that a box passes over, widened by a margin.
+Region swept(const GroundBox& box,
+             const FixedPose& start,
+             const FixedPose& target,
+             std::int64_t margin) noexcept {
+    const auto hull = [&](std::int64_t by) {
+        return hull_of(corners_of(box, start, by), corners_of(box, target, by));
+    };
+    return {hull(margin + kBesideTenthMm), hull(margin)};
+}
+
 FootSweep foot_sweep(Foot foot,
                      const GroundBox& box,
                      const GateLimits& limits,
                      const FixedPose& start,
                      const FixedPose& target,
-                     std::int64_t beside) noexcept {
+                     std::int64_t drift_margin) noexcept {
     FootSweep sweep;
     sweep.foot = foot;
     sweep.stance = grid::convex_hull(corners_of(box, start, 0));
     sweep.landing = grid::convex_hull(corners_of(box, target, 0));
     sweep.landing_center = to_odom(target, box.center_x_tenth_mm, box.center_y_tenth_mm);
-    const std::int64_t margin = limits.foot_margin_tenth_mm + beside;
-    sweep.corridor = hull_of(corners_of(box, start, margin), corners_of(box, target, margin));
-    sweep.band = grid::convex_hull(corners_of(box, target, limits.drop_band_tenth_mm + beside));
+    sweep.corridor = swept(box, start, target, limits.foot_margin_tenth_mm + drift_margin);
+    sweep.band = swept(box, target, target, limits.drop_band_tenth_mm + drift_margin);
     return sweep;
 }
 
@@ -100,10 +110,10 @@ Extent extent_of(const Sweep& sweep) noexcept {
     };
     for (const FootSweep& foot : sweep.feet) {
         include(foot.stance);
-        include(foot.corridor);
-        include(foot.band);
+        include(foot.corridor.around);
+        include(foot.band.around);
     }
-    for (const grid::FixedConvex& part : sweep.body) include(part);
+    for (const Sweep::Part& part : sweep.body) include(part.region.around);
     return extent;
 }
 
@@ -118,17 +128,18 @@ Sweep sweep_of(const Machine& machine,
                const FixedPose& start,
                const Movement& movement,
                std::int64_t margin_tenth_mm) noexcept {
-    const std::int64_t beside = kBesideTenthMm + margin_tenth_mm;
     Sweep sweep;
     sweep.target = moved(start, movement);
     sweep.feet = {
-        foot_sweep(Foot::left, machine.left_foot, machine.limits, start, sweep.target, beside),
-        foot_sweep(Foot::right, machine.right_foot, machine.limits, start, sweep.target, beside)};
+        foot_sweep(
+            Foot::left, machine.left_foot, machine.limits, start, sweep.target, margin_tenth_mm),
+        foot_sweep(
+            Foot::right, machine.right_foot, machine.limits, start, sweep.target, margin_tenth_mm)};
     std::size_t part = 0;
     for (const auto& [box, low, high] : machine.body.all()) {
-        const std::int64_t margin = machine.body.sway_tenth_mm + beside;
-        sweep.body[part++] =
-            hull_of(corners_of(box, start, margin), corners_of(box, sweep.target, margin));
+        const std::int64_t sway = machine.body.sway_tenth_mm;
+        sweep.body[part++] = {swept(box, start, sweep.target, sway + margin_tenth_mm),
+                              grid::convex_hull(corners_of(box, start, sway))};
     }
     return sweep;
 }

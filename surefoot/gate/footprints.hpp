@@ -38,21 +38,35 @@ struct FixedPose {
 /// Returns the pose of base_link after the movement.
 [[nodiscard]] FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept;
 
-/// The regions that one foot needs for a movement. kBesideTenthMm widens corridor and band, too.
+/// A region that a movement needs.
+struct Region {
+    /// Here mapped objects count: wider than `way` by kBesideTenthMm.
+    grid::FixedConvex around;
+    /// Here the ground must be known. Unlike a mapped object, unknown ground is not displaced.
+    grid::FixedConvex way;
+};
+
+/// The regions that one foot needs for a movement.
 struct FootSweep {
     Foot foot = Foot::none;
     grid::FixedConvex stance;   ///< sole area at the start
     grid::FixedConvex landing;  ///< sole area at the target
     grid::FixedPoint landing_center;
-    grid::FixedConvex corridor;  ///< hull of stance and landing, widened by `foot_margin`
-    grid::FixedConvex band;      ///< landing box, widened by `drop_band`
+    Region corridor;  ///< hull of stance and landing, widened by `foot_margin`
+    Region band;      ///< landing box, widened by `drop_band`
 };
 
 /// All regions that a movement needs, in odom.
 struct Sweep {
     std::array<FootSweep, 2> feet;  ///< left, right
-    /// For each part of the body: hull of its box at start and target, wider by sway and 25 mm.
-    std::array<grid::FixedConvex, Body::kMaxParts> body;
+    /// The areas of one part of the body.
+    struct Part {
+        Region region;  ///< hull of its box at start and target, widened by `sway`
+        /// Its box at the start, wider by sway. The part itself fills the cells that overlap it,
+        /// but for slivers narrower than a cell. So nothing else is there.
+        grid::FixedConvex filled;
+    };
+    std::array<Part, Body::kMaxParts> body;
     FixedPose target;
 };
 

@@ -100,9 +100,9 @@ TEST(Footprints, corridor_and_body_hull_hold_every_pose_on_the_way) {
                     EXPECT_LE(outside_by(hull, pose.point(u, v)), 0.0) << code << " at " << s;
                 }
             };
-            expect_inside(machine.left_foot, sweep.feet[0].corridor);
-            expect_inside(machine.right_foot, sweep.feet[1].corridor);
-            expect_inside(machine.body.parts[0].box, sweep.body[0]);
+            expect_inside(machine.left_foot, sweep.feet[0].corridor.way);
+            expect_inside(machine.right_foot, sweep.feet[1].corridor.way);
+            expect_inside(machine.body.parts[0].box, sweep.body[0].region.way);
         }
     }
 }
@@ -138,11 +138,11 @@ TEST(Footprints, every_region_has_its_margin_to_the_tenth_of_a_millimetre) {
         expect_box("stance", box_around(left.stance), {-1260, 850}, {2400, 2750});
         expect_box("landing", box_around(left.landing), {2740, 850}, {6400, 2750});
         expect_box("corridor",
-                   box_around(left.corridor),
+                   box_around(left.corridor.around),
                    {-1260 - 450 - extra, 850 - 450 - extra},
                    {6400 + 450 + extra, 2750 + 450 + extra});
         expect_box("band",
-                   box_around(left.band),
+                   box_around(left.band.around),
                    {2740 - 1250 - extra, 850 - 1250 - extra},
                    {6400 + 1250 + extra, 2750 + 1250 + extra});
         const FootSweep& right = sweep.feet[1];
@@ -150,10 +150,25 @@ TEST(Footprints, every_region_has_its_margin_to_the_tenth_of_a_millimetre) {
         EXPECT_EQ(right.landing_center, (grid::FixedPoint{4570, -1800}));
         expect_box("right", box_around(right.landing), {2740, -2750}, {6400, -850});
         expect_box("body",
-                   box_around(sweep.body[0]),
+                   box_around(sweep.body[0].region.around),
                    {-3300 - 750 - extra, -3225 - 750 - extra},
                    {7300 + 750 + extra, 3225 + 750 + extra});
-        EXPECT_EQ(sweep.body[1].count, 0) << "there is one part";
+        // The ground must be known without the 25 mm.
+        expect_box("way of the foot",
+                   box_around(left.corridor.way),
+                   {-1260 - 200 - extra, 850 - 200 - extra},
+                   {6400 + 200 + extra, 2750 + 200 + extra});
+        expect_box("known band",
+                   box_around(left.band.way),
+                   {2740 - 1000 - extra, 850 - 1000 - extra},
+                   {6400 + 1000 + extra, 2750 + 1000 + extra});
+        expect_box("way of the body",
+                   box_around(sweep.body[0].region.way),
+                   {-3300 - 500 - extra, -3225 - 500 - extra},
+                   {7300 + 500 + extra, 3225 + 500 + extra});
+        // The space that the body fills now does not depend on the drift.
+        expect_box("filled", box_around(sweep.body[0].filled), {-3800, -3725}, {3800, 3725});
+        EXPECT_EQ(sweep.body[1].region.around.count, 0) << "there is one part";
         // Landing and body reach farthest; each side of the extent belongs to a region.
         expect_box(
             "all", extent_of(sweep), {-4050 - extra, -4000 - extra}, {8050 + extra, 4000 + extra});
@@ -185,10 +200,10 @@ TEST(Footprints, all_of_a_sweep_lies_in_its_extent_and_touches_its_four_sides) {
         for (const FootSweep& foot : sweep.feet) {
             look(foot.stance);
             look(foot.landing);
-            look(foot.corridor);
-            look(foot.band);
+            look(foot.corridor.around);
+            look(foot.band.around);
         }
-        look(sweep.body[0]);
+        look(sweep.body[0].region.around);
         expect_box("all", all, found.low, found.high);
     }
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 
 #include "surefoot/gate/findings.hpp"
 #include "surefoot/gate/foot_support.hpp"
@@ -145,15 +144,14 @@ bool stands_on_map(const Machine& machine, const grid::MapSnapshot& map) noexcep
         sweep_of(machine,
                  fixed_pose(here.x_tenth_mm, here.y_tenth_mm, here.cos_yaw, here.sin_yaw),
                  Movement{});
-    const std::optional<std::int64_t> ground =
-        stance_heights(Ground(map, here, machine.limits), here, standing).both_tenth_mm;
-    if (!ground) return true;
+    const Stance stance = find_stance(Ground(map, here, machine.limits), here, standing, true);
+    if (!stance.known) return true;
     std::int64_t step = 0;
     for (const StepLimits& limits : machine.limits.step) {
         if (limits.enabled)
             step = std::max<std::int64_t>({step, limits.up_tenth_mm, limits.down_tenth_mm});
     }
-    return within(map.body_z_tenth_mm - machine.sole_depth_tenth_mm - *ground,
+    return within(map.body_z_tenth_mm - machine.sole_depth_tenth_mm - stance.plane.height_tenth_mm,
                   step + 2 * std::int64_t{machine.limits.swing_clearance_tenth_mm});
 }
 
@@ -222,18 +220,17 @@ void judge_sweep(const Machine& machine,
     });
     if (!findings.reasons().empty()) return;  // a damaged map gives no terrain reasons
     const Movement& movement = *movement_for(machine, query.command);
-    const StanceHeights stance = stance_heights(ground, query, sweep);
-    const Scene scene{
-        machine, movement, ground, sweep, stance.both_tenth_mm.value_or(0), stance.feet_tenth_mm};
-    findings.evidence.stance_known = stance.both_tenth_mm.has_value();
-    findings.evidence.stance_height_tenth_mm = scene.stance_tenth_mm;
+    const bool stairs = movement.movement_class == MovementClass::stair;
+    const Scene scene{machine, movement, ground, sweep, find_stance(ground, query, sweep, stairs)};
+    findings.evidence.stance_known = scene.stance.known;
+    findings.evidence.stance_height_tenth_mm = scene.stance.plane.height_tenth_mm;
 
     findings.prove(Proof::stance_known, [&] { check_stance(scene, findings); });
-    if (!stance.both_tenth_mm) {  // no height to compare with; unknown cells are already reported
+    if (!scene.stance.known) {  // no height to compare with; unknown cells are already reported
         findings.deny(reason_of_unknown(Knowledge::unknown));
         return;
     }
-    if (movement.movement_class == MovementClass::stair)
+    if (stairs)
         judge_stair(scene, findings);
     else
         judge_walk(scene, findings);

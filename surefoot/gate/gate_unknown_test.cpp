@@ -2,6 +2,8 @@
 // Unknown ground, and ground beyond the map.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/gate/gate_testing.hpp"
@@ -29,13 +31,16 @@ TEST(Gate, given_one_unknown_cell_under_the_landing_foot_then_it_is_named) {
     expect_ok(ask(floor, kBackward));  // backwards this ground is not needed
 }
 
-TEST(Gate, any_single_unknown_cell_of_the_swept_area_inhibits) {
+TEST(Gate, any_single_unknown_cell_that_feet_or_body_come_over_inhibits) {
     Terrain floor;
     const auto map = floor.snapshot();
     const Machine machine = rex();
-    // Everything between the rear of the body at the start and the drop band ahead of the toes.
-    for (double x = -0.36; x < 0.73; x += 0.025) {
+    // From the heels to the drop band ahead of the toes. Between and beside the feet, only ground
+    // ahead of the body (0.38 m) and behind its new front (0.78 m) matters.
+    for (double x = -0.13; x < 0.73; x += 0.025) {
         for (const double y : {-0.3, -0.18, 0.0, 0.18, 0.3}) {
+            const bool way_of_foot = std::abs(std::abs(y) - 0.18) < 0.01;
+            if (!way_of_foot && x < 0.41) continue;
             const std::size_t at = cell_at(*map, x, y);
             const auto before = map->source[at];
             map->source[at] = grid::EvidenceSource::unknown;
@@ -46,6 +51,41 @@ TEST(Gate, any_single_unknown_cell_of_the_swept_area_inhibits) {
             map->source[at] = before;
         }
     }
+}
+
+/// The body passes over unknown ground that it fills now, or that nothing can stand out of.
+TEST(Gate, ground_below_the_body_may_be_unknown_where_the_space_is_free) {
+    const Machine machine = rex();
+    const auto ask_about = [&](double x, double y, std::int32_t bound, std::uint8_t code) {
+        Terrain floor;
+        const auto map = floor.snapshot();
+        for (const double side : {-0.0125, 0.0125}) {
+            for (const double along : {-0.0125, 0.0125}) {
+                const std::size_t at = cell_at(*map, x + along, y + side);
+                map->source[at] = grid::EvidenceSource::unknown;
+                map->height_tenth_mm[at] = bound;
+            }
+        }
+        seal(*map);
+        return decide(machine, query_at_body(code, *map), *map, kReady, kNowNs);
+    };
+    constexpr std::int32_t kNothing = grid::MapSnapshot::kUnknownHeight;
+    constexpr double kAhead_m = 0.7625;  // beyond the drop bands of the feet
+    // Behind the heels and between the feet the body stands now.
+    expect_ok(ask_about(-0.35, 0.0, kNothing, kForward));
+    expect_ok(ask_about(0.1, 0.0, kNothing, kForward));
+    // It comes to the ground ahead, and with a step back to the ground behind.
+    expect_refused(ask_about(kAhead_m, 0.0, kNothing, kForward), Reason::unknown_cells);
+    expect_refused(ask_about(-0.55, 0.0, kNothing, kBackward), Reason::unknown_cells);
+    // Its lower edge is 0.144 m over the soles. Lines of sight below it show free space there ...
+    expect_ok(ask_about(kAhead_m, 0.0, 1440, kForward));
+    expect_refused(ask_about(kAhead_m, 0.0, 1441, kForward), Reason::unknown_cells);
+    // ... but more than 50 mm below the ground they show the edge of a drop.
+    expect_ok(ask_about(kAhead_m, 0.0, -499, kForward));
+    expect_refused(ask_about(kAhead_m, 0.0, -500, kForward), Reason::unknown_cells);
+    // Under a foot and in its drop band nothing but known ground counts.
+    expect_refused(ask_about(0.5, 0.18, 0, kForward), Reason::unknown_cells);
+    expect_refused(ask_about(0.72, 0.18, 0, kForward), Reason::unknown_cells);
 }
 
 TEST(Gate, given_ground_never_seen_ahead_then_a_step_there_is_refused) {

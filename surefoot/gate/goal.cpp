@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/gate/goal.hpp"
 
-#include <optional>
-
 #include "surefoot/gate/findings.hpp"
 #include "surefoot/gate/footprints.hpp"
 #include "surefoot/gate/ground.hpp"
@@ -23,12 +21,12 @@ void check_joined(const Machine& machine,
     const Sweep sweep = sweep_of(
         machine, fixed_pose(here.x_tenth_mm, here.y_tenth_mm, here.cos_yaw, here.sin_yaw), stay);
     if (!ground.is_intact(ground.zone_of(sweep))) findings.deny(Reason::internal);
-    const std::optional<std::int64_t> stance = stance_heights(ground, here, sweep).both_tenth_mm;
-    if (!stance) {
+    const Stance stance = find_stance(ground, here, sweep, false);
+    if (!stance.known) {
         findings.deny(Reason::disconnected);
         return;
     }
-    const ReachableSurfaces reachable = surfaces_of_stance({machine, stay, ground, sweep, *stance});
+    const ReachableSurfaces reachable = surfaces_of_stance({machine, stay, ground, sweep, stance});
     for (const FootSweep& foot : there.feet) {
         grid::for_each_overlapped_cell(
             foot.stance, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {

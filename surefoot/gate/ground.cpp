@@ -48,6 +48,12 @@ void Ground::take_word(std::size_t at,
     cell.sigma_tenth_mm = 0;
 }
 
+bool Ground::is_below(std::int64_t ix, std::int64_t iy, std::int64_t z_tenth_mm) const noexcept {
+    if (ix < 0 || iy < 0 || ix >= map_.nx || iy >= map_.ny) return false;
+    const std::int64_t bound = map_.height_tenth_mm[static_cast<std::size_t>(iy * map_.nx + ix)];
+    return bound != grid::MapSnapshot::kUnknownHeight && bound <= z_tenth_mm;
+}
+
 bool Ground::is_unsure_but_agrees(const GroundCell& cell) const noexcept {
     constexpr std::int32_t kUnsureTenthMm = 79;
     constexpr std::int64_t kAgreesTenthMm = 150;

@@ -69,14 +69,19 @@ class Ground {
         if (attestation_) take_word(at, ix, iy, cell);
         return cell;
     }
-    /// True if the eight cells around a cell are known and each passes `test(cell)`.
+    /// For an unknown cell inside the map: true if lines of sight over it show that nothing in it
+    /// is higher than `z_tenth_mm` (odom).
+    [[nodiscard]] bool is_below(std::int64_t ix,
+                                std::int64_t iy,
+                                std::int64_t z_tenth_mm) const noexcept;
+    /// True if the eight cells around a cell are known and each passes `test(cell, ix, iy)`.
     template <typename Test>
     [[nodiscard]] bool all_around(std::int64_t ix, std::int64_t iy, Test&& test) const noexcept {
         for (std::int64_t y = iy - 1; y <= iy + 1; ++y) {
             for (std::int64_t x = ix - 1; x <= ix + 1; ++x) {
                 if (x == ix && y == iy) continue;
                 const GroundCell beside = cell(x, y);
-                if (!beside.known() || !test(beside)) return false;
+                if (!beside.known() || !test(beside, x, y)) return false;
             }
         }
         return true;

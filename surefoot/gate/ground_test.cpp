@@ -193,7 +193,9 @@ TEST(Ground, all_around_asks_the_eight_and_not_the_one) {
     Terrain floor;
     const auto map = floor.snapshot();
     const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
-    const auto is_level = [](const GroundCell& cell) { return cell.height_tenth_mm == 0; };
+    const auto is_level = [](const GroundCell& cell, auto, auto) {
+        return cell.height_tenth_mm == 0;
+    };
     EXPECT_TRUE(ground.all_around(100, 100, is_level));
     map->height_tenth_mm[100 * 240 + 100] = 1;
     EXPECT_TRUE(ground.all_around(100, 100, is_level));
@@ -216,7 +218,8 @@ TEST(Ground, all_around_asks_the_eight_and_not_the_one) {
         map->source[at] = grid::EvidenceSource::measured;
     }
     int asked = 0;
-    EXPECT_TRUE(ground.all_around(100, 100, [&asked](const GroundCell&) { return ++asked > 0; }));
+    EXPECT_TRUE(ground.all_around(
+        100, 100, [&asked](const GroundCell&, auto, auto) { return ++asked > 0; }));
     EXPECT_EQ(asked, 8);
     EXPECT_FALSE(ground.all_around(0, 100, is_level)) << "beyond the map nothing is known";
 }

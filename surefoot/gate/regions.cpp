@@ -47,9 +47,10 @@ bool is_sure(const Scene& scene, const Place& place) noexcept {
     const std::int64_t limit = scene.machine.limits.cell_sigma_tenth_mm;
     if (place.cell.sigma_tenth_mm <= limit) return true;
     return place.cell.sigma_tenth_mm <= kAloneFactor * limit &&
-           scene.ground.all_around(place.ix, place.iy, [limit](const GroundCell& beside) {
-               return beside.sigma_tenth_mm <= limit;
-           });
+           scene.ground.all_around(
+               place.ix, place.iy, [limit](const GroundCell& beside, auto, auto) {
+                   return beside.sigma_tenth_mm <= limit;
+               });
 }
 
 /// Reports why a cell fails. This is the slow path of check_knowledge().
@@ -86,22 +87,19 @@ bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) 
     return check_doubtful(scene, place, findings);
 }
 
-/// Returns the height of a cell above the stance.
-std::int64_t rise_of(const Scene& scene, const GroundCell& cell) noexcept {
-    return cell.height_tenth_mm - scene.stance_tenth_mm;
+/// Returns the height of a cell above the plane of the stance.
+std::int64_t rise_of(const Scene& scene, const Place& place) noexcept {
+    return place.cell.height_tenth_mm - scene.stance.plane.at(place.ix, place.iy);
 }
 
 /// The side of the stance height on which a limit lies.
 enum class Side : std::int8_t { up = 1, down = -1 };
 
 /// True if the ground of a cell keeps `limit` on this side of the stance by `factor` sigma.
-bool is_below(const Scene& scene,
-              const GroundCell& cell,
-              Side side,
-              std::int64_t limit,
-              double factor) noexcept {
-    const std::int64_t slack = limit - static_cast<std::int64_t>(side) * rise_of(scene, cell);
-    return factor * static_cast<double>(cell.sigma_tenth_mm) <= static_cast<double>(slack);
+bool is_below(
+    const Scene& scene, const Place& place, Side side, std::int64_t limit, double factor) noexcept {
+    const std::int64_t slack = limit - static_cast<std::int64_t>(side) * rise_of(scene, place);
+    return factor * static_cast<double>(place.cell.sigma_tenth_mm) <= static_cast<double>(slack);
 }
 
 /// Reports why a cell fails. This is the slow path of check_below().
@@ -111,16 +109,17 @@ void check_unsure(const Scene& scene,
                   std::int64_t limit,
                   Reason reason,
                   Findings& findings) noexcept {
-    const std::int64_t value = static_cast<std::int64_t>(side) * rise_of(scene, place.cell);
+    const std::int64_t value = static_cast<std::int64_t>(side) * rise_of(scene, place);
     if (value > limit) {
         deny(findings, reason, place, value, limit);
         return;
     }
     const double factor = scene.machine.limits.sigma_factor;
-    if (is_below(scene, place.cell, side, limit, 1.0) &&
-        scene.ground.all_around(place.ix, place.iy, [&](const GroundCell& beside) {
-            return is_below(scene, beside, side, limit, factor);
-        }))
+    if (is_below(scene, place, side, limit, 1.0) &&
+        scene.ground.all_around(
+            place.ix, place.iy, [&](const GroundCell& beside, std::int64_t ix, std::int64_t iy) {
+                return is_below(scene, {beside, ix, iy}, side, limit, factor);
+            }))
         return;
     deny(findings,
          Reason::not_resolvable,
@@ -141,7 +140,7 @@ void check_unsure(const Scene& scene,
                                                std::int64_t limit,
                                                Reason reason,
                                                Findings& findings) noexcept {
-    if (!is_below(scene, place.cell, side, limit, scene.machine.limits.sigma_factor))
+    if (!is_below(scene, place, side, limit, scene.machine.limits.sigma_factor))
         check_unsure(scene, place, side, limit, reason, findings);
 }
 
@@ -152,7 +151,7 @@ void check_unsure(const Scene& scene,
                                                   Reason reason,
                                                   Findings& findings) noexcept {
     if (place.cell.clearance_tenth_mm == grid::MapSnapshot::kNoCeiling) return;
-    const std::int64_t ceiling = rise_of(scene, place.cell) + place.cell.clearance_tenth_mm;
+    const std::int64_t ceiling = rise_of(scene, place) + place.cell.clearance_tenth_mm;
     if (!(ceiling < height)) return;
     Finding finding = finding_at(place.ix, place.iy, place.foot, ceiling, height);
     finding.severity = height - ceiling;
@@ -160,36 +159,26 @@ void check_unsure(const Scene& scene,
     findings.deny(reason, finding);
 }
 
-/// Tests one cell of a region: `always(place)` for a cell inside the map, `test(place)` for a known
-/// cell. Returns false outside the map. This ends the region, because further cells outside the map
-/// add nothing.
-template <typename Test, typename Always>
-bool check_cell(const Scene& scene,
-                std::int64_t ix,
-                std::int64_t iy,
-                Foot foot,
-                Findings& findings,
-                Test&& test,
-                Always&& always) noexcept {
-    const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
-    const bool inside = place.cell.knowledge != Knowledge::outside;
-    if (inside) always(place);
-    if (check_knowledge(scene, place, findings)) test(place);
-    return inside;
-}
-
-/// Tests every cell of a region.
+/// Tests every cell of a region: `always(place)` for a cell inside the map, `test(place)` for a
+/// known cell. An unknown cell of `region.way` is refused. Ends at the first such cell outside the
+/// map, because further ones add nothing.
 template <typename Test, typename Always>
 void check_region(const Scene& scene,
-                  const grid::FixedConvex& region,
+                  const Region& region,
                   Foot foot,
                   Findings& findings,
                   Test&& test,
                   Always&& always) noexcept {
-    grid::for_each_overlapped_cell(
-        region, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
-            return check_cell(scene, ix, iy, foot, findings, test, always);
-        });
+    const grid::FixedGrid& grid = scene.ground.grid();
+    const grid::RowRuns way(region.way, grid);
+    grid::for_each_overlapped_cell(region.around, grid, [&](std::int64_t ix, std::int64_t iy) {
+        const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
+        const bool inside = place.cell.knowledge != Knowledge::outside;
+        if (inside) always(place);
+        if (!place.cell.known() && !way.run(iy).contains(ix)) return true;
+        if (check_knowledge(scene, place, findings)) test(place);
+        return inside;
+    });
 }
 
 /// The space of the body over some neighbouring cells of a row: from the lowest to the highest part
@@ -217,6 +206,62 @@ BodyOver body_over(std::span<const BodyPart> parts,
     return over;
 }
 
+/// Tells whether the body may move over unknown cells. A row is computed when its first unknown
+/// cell is met.
+class UnknownBelowBody {
+  public:
+    explicit UnknownBelowBody(const Scene& scene) noexcept : scene_(scene) {}
+
+    /// True if each part of the body that enters the space above this cell is higher than anything
+    /// in the cell can be (Ground::is_below). The space that a part fills now needs no proof.
+    [[nodiscard]] bool is_free(std::int64_t ix, std::int64_t iy) noexcept {
+        const std::int64_t ground = scene_.stance.plane.at(ix, iy);
+        if (scene_.ground.is_below(ix, iy, ground - scene_.machine.limits.drop_tenth_mm))
+            return false;
+        if (iy != iy_) find_row(iy);
+        const std::span<const BodyPart> parts = scene_.machine.body.all();
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            if (!way_[i].contains(ix) || filled_[i].contains(ix)) continue;
+            if (!scene_.ground.is_below(ix, iy, ground + parts[i].low_tenth_mm)) return false;
+        }
+        return true;
+    }
+
+  private:
+    void find_row(std::int64_t iy) noexcept {
+        iy_ = iy;
+        for (std::size_t i = 0; i < scene_.machine.body.all().size(); ++i) {
+            const Sweep::Part& part = scene_.sweep.body[i];
+            way_[i] = grid::RowRuns(part.region.way, scene_.ground.grid()).run(iy);
+            filled_[i] = grid::RowRuns(part.filled, scene_.ground.grid()).run(iy);
+        }
+    }
+
+    const Scene& scene_;
+    std::int64_t iy_ = INT64_MIN;
+    std::array<grid::FixedRun, Body::kMaxParts> way_;
+    std::array<grid::FixedRun, Body::kMaxParts> filled_;
+};
+
+/// Tests that a known cell in the path of the body leaves room for the parts above it. Here the
+/// sigma of the cell counts only against the lower edge of the body.
+void check_body_cell(const Scene& scene,
+                     const Place& place,
+                     const BodyOver& over,
+                     Findings& findings) noexcept {
+    const std::int64_t drift_limit = scene.machine.limits.drift_tenth_mm;
+    if (place.cell.drift_tenth_mm > drift_limit)
+        deny(findings, Reason::memory_uncertain, place, place.cell.drift_tenth_mm, drift_limit);
+    check_below(scene,
+                place,
+                Side::up,
+                over.low_tenth_mm + scene.lift_tenth_mm,
+                Reason::body_clearance,
+                findings);
+    check_overhead(
+        scene, place, over.high_tenth_mm + scene.lift_tenth_mm, Reason::body_clearance, findings);
+}
+
 /// Returns the greatest allowed height above the stance of an object in the path of a foot. On
 /// stairs, the largest step up is added, because the foot steps over a nosing.
 std::int64_t swing_height(const Scene& scene) noexcept {
@@ -229,32 +274,6 @@ std::int64_t swing_height(const Scene& scene) noexcept {
 
 constexpr auto kNothing = [](const Place&) noexcept {};
 
-/// Mean height of the known cells under the present feet.
-struct MeanHeight {
-    std::int64_t sum = 0;
-    std::int64_t known = 0;
-
-    void add(const Ground& ground, const FootSweep& foot) noexcept {
-        grid::for_each_overlapped_cell(
-            foot.stance, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
-                const GroundCell cell = ground.cell(ix, iy);
-                if (cell.known()) {
-                    sum += cell.height_tenth_mm;
-                    ++known;
-                }
-                return true;
-            });
-    }
-    void add(const MeanHeight& other) noexcept {
-        sum += other.sum;
-        known += other.known;
-    }
-    [[nodiscard]] std::optional<std::int64_t> height_tenth_mm() const noexcept {
-        if (known == 0) return std::nullopt;
-        return grid::floor_div(2 * sum + known, 2 * known);  // rounded to the nearest integer
-    }
-};
-
 }  // namespace
 
 Finding finding_at(std::int64_t ix,
@@ -265,23 +284,6 @@ Finding finding_at(std::int64_t ix,
     return {ix, iy, value_tenth_mm, limit_tenth_mm, value_tenth_mm, foot};
 }
 
-StanceHeights stance_heights(const Ground& ground,
-                             const Query& query,
-                             const Sweep& sweep) noexcept {
-    StanceHeights heights;
-    MeanHeight both;
-    for (std::size_t i = 0; i < sweep.feet.size(); ++i) {
-        MeanHeight mean;
-        mean.add(ground, sweep.feet[i]);
-        heights.feet_tenth_mm[i] = mean.height_tenth_mm();
-        both.add(mean);
-    }
-    heights.both_tenth_mm = query.stance_source == StanceHeight::given
-                                ? query.stance_height_tenth_mm
-                                : both.height_tenth_mm();
-    return heights;
-}
-
 ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {
     ReachableSurfaces reachable;
     const std::int64_t step = scene.machine.limits.swing_clearance_tenth_mm;
@@ -289,7 +291,7 @@ ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {
         grid::for_each_overlapped_cell(
             foot.stance, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                 const GroundCell cell = scene.ground.cell(ix, iy);
-                const std::int64_t rise = rise_of(scene, cell);
+                const std::int64_t rise = cell.height_tenth_mm - scene.stance.plane.at(ix, iy);
                 if (cell.knowledge == Knowledge::measured && rise >= -step && rise <= step)
                     reachable.add(cell.component);
                 return true;
@@ -305,7 +307,7 @@ void check_stance(const Scene& scene, Findings& findings) noexcept {
         const auto test = [&](const Place& place) {
             check_below(scene, place, Side::down, limits.drop_tenth_mm, Reason::drop_off, findings);
         };
-        check_region(scene, foot.stance, foot.foot, findings, test, kNothing);
+        check_region(scene, {foot.stance, foot.stance}, foot.foot, findings, test, kNothing);
     }
 }
 
@@ -323,13 +325,15 @@ void check_corridors(const Scene& scene, Findings& findings) noexcept {
 
 void check_body(const Scene& scene, Findings& findings) noexcept {
     const std::span<const BodyPart> parts = scene.machine.body.all();
+    const grid::FixedGrid& grid = scene.ground.grid();
     std::array<grid::RowRuns, Body::kMaxParts> areas;
     grid::FixedRun rows{INT64_MAX, INT64_MIN};
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        areas[i] = {scene.sweep.body[i], scene.ground.grid()};
+        areas[i] = {scene.sweep.body[i].region.around, grid};
         rows = {std::min(rows.first, areas[i].rows().first),
                 std::max(rows.last, areas[i].rows().last)};
     }
+    UnknownBelowBody unknown(scene);
     // The parts of the body lie above each other. So each cell is tested once for all parts above
     // it.
     for (std::int64_t iy = rows.first; iy <= rows.last; ++iy) {
@@ -346,21 +350,17 @@ void check_body(const Scene& scene, Findings& findings) noexcept {
                 ix = over.last + 1;
                 continue;
             }
-            const auto test = [&](const Place& place) {
-                check_below(scene,
-                            place,
-                            Side::up,
-                            over.low_tenth_mm + scene.lift_tenth_mm,
-                            Reason::body_clearance,
-                            findings);
-                check_overhead(scene,
-                               place,
-                               over.high_tenth_mm + scene.lift_tenth_mm,
-                               Reason::body_clearance,
-                               findings);
-            };
             for (; ix <= over.last; ++ix) {
-                if (!check_cell(scene, ix, iy, Foot::none, findings, test, kNothing)) return;
+                const Place place{scene.ground.cell(ix, iy), ix, iy, Foot::none};
+                if (!place.cell.known() && unknown.is_free(ix, iy)) continue;
+                count(place.cell, findings.evidence);
+                if (place.cell.known()) {
+                    check_body_cell(scene, place, over, findings);
+                    continue;
+                }
+                deny(findings, reason_of_unknown(place.cell.knowledge), place, 0, 0);
+                // Further cells outside the map add nothing.
+                if (place.cell.knowledge == Knowledge::outside) return;
             }
         }
     }
@@ -376,7 +376,7 @@ void check_bands(const Scene& scene, Findings& findings) noexcept {
         // on the floor. So drop evidence does not count on cells that are too high for a foot.
         const auto evidence = [&](const Place& place) {
             const bool above =
-                place.cell.known() && rise_of(scene, place.cell) > limits.swing_clearance_tenth_mm;
+                place.cell.known() && rise_of(scene, place) > limits.swing_clearance_tenth_mm;
             if (place.cell.drop_evidence >= limits.drop_evidence && !above)
                 deny(findings, Reason::drop_off, place, 0, limits.drop_tenth_mm);
         };

@@ -45,13 +45,16 @@ struct Floor {
         const Sweep sweep = sweep_of(machine, start, movement);
         const Ground ground(*map, query, machine.limits);
         Findings findings;
-        check(Scene{machine, movement, ground, sweep, query.stance_height_tenth_mm}, findings);
+        check(
+            Scene{machine, movement, ground, sweep, Stance::level_at(query.stance_height_tenth_mm)},
+            findings);
         return findings;
     }
     [[nodiscard]] std::optional<std::int64_t> stance() const {
         std::optional<std::int64_t> height;
         static_cast<void>(look([&](const Scene& scene, Findings&) {
-            height = stance_heights(scene.ground, query, scene.sweep).both_tenth_mm;
+            const Stance stance = find_stance(scene.ground, query, scene.sweep, false);
+            if (stance.known) height = stance.plane.height_tenth_mm;
         }));
         return height;
     }
@@ -398,10 +401,13 @@ TEST(Body, what_stands_between_two_parts_is_not_in_the_way) {
     // Each part has its own height.
     EXPECT_TRUE(reasons_with(0.35, 1000).empty());
     EXPECT_EQ(reasons_with(-0.35, 1000), blocked);
-    // Unknown ground between the parts is allowed, below them it is not.
+    // Unknown ground between the parts is allowed, and where they stand now; ahead of them it is
+    // not.
     floor.map->source[floor.at(0.0, 0.0)] = grid::EvidenceSource::unknown;
-    EXPECT_TRUE(floor.look(check_body).reasons().empty());
     floor.map->source[floor.at(0.35, 0.0)] = grid::EvidenceSource::unknown;
+    EXPECT_TRUE(floor.look(check_body).reasons().empty());
+    floor.map->source[floor.at(0.35, 0.4)] = grid::EvidenceSource::unknown;
+    floor.map->height_tenth_mm[floor.at(0.35, 0.4)] = grid::MapSnapshot::kUnknownHeight;
     EXPECT_EQ(floor.look(check_body).reasons(), ReasonSet(Reason::unknown_cells));
 }
 
@@ -414,9 +420,9 @@ TEST(Body, asks_every_cell_of_every_part_once) {
         floor.machine.body.count = 2;
         std::set<std::pair<std::int64_t, std::int64_t>> cells;
         const Findings findings = floor.look([&](const Scene& scene, Findings& found) {
-            for (const grid::FixedConvex& part : scene.sweep.body) {
+            for (const Sweep::Part& part : scene.sweep.body) {
                 grid::for_each_overlapped_cell(
-                    part, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                    part.region.around, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                         cells.insert({ix, iy});
                         return true;
                     });

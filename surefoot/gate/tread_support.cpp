@@ -102,7 +102,7 @@ void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
             if (magnitude(axes.middle_of(ix, iy).along - axes.ankle()) > axes.ankle_reach())
                 return true;
             const GroundCell cell = scene.ground.cell(ix, iy);
-            sum += cell.height_tenth_mm - scene.stance_tenth_mm;
+            sum += cell.height_tenth_mm - scene.stance.plane.height_tenth_mm;
             ++count;
             return cell.known();
         });
@@ -124,13 +124,13 @@ void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
             tread.heel_edge = std::min(tread.heel_edge, -middle.along + from_middle);
     };
     grid::for_each_overlapped_cell(
-        foot.band, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+        foot.band.around, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
             const GroundCell cell = scene.ground.cell(ix, iy);
             if (!cell.known()) return true;
             tread.drift_tenth_mm =
                 std::max<std::int64_t>(tread.drift_tenth_mm, cell.drift_tenth_mm);
             const std::int64_t above =
-                cell.height_tenth_mm - scene.stance_tenth_mm - tread.rise_tenth_mm;
+                cell.height_tenth_mm - scene.stance.plane.height_tenth_mm - tread.rise_tenth_mm;
             if (above < -limits.drop_tenth_mm)
                 begins(axes.middle_of(ix, iy), true);
             else if (cell.drop_evidence >= limits.drop_evidence &&
@@ -196,13 +196,13 @@ void check_band(const Scene& scene,
     const FootAxes axes(scene, foot);
     const std::int64_t drop = limits.drop_tenth_mm;
     grid::for_each_overlapped_cell(
-        foot.band, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+        foot.band.around, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
             const GroundCell cell = scene.ground.cell(ix, iy);
             const BandCell asked{cell, finding_at(ix, iy, foot.foot, 0, 0)};
             if (!asked.check_knowledge(limits, findings))
                 return cell.knowledge != Knowledge::outside;
             const std::int64_t above =
-                cell.height_tenth_mm - scene.stance_tenth_mm - tread.rise_tenth_mm;
+                cell.height_tenth_mm - scene.stance.plane.height_tenth_mm - tread.rise_tenth_mm;
             const FootAxes::Place middle = axes.middle_of(ix, iy);
             const std::int64_t near = limits.foot_margin_tenth_mm + kBesideTenthMm +
                                       times_up(limits.sigma_factor, cell.drift_tenth_mm);
@@ -266,7 +266,7 @@ std::optional<std::int64_t> nosing_line(const Scene& scene,
     std::optional<std::int64_t> nearest;
     for (const grid::SnapshotEdge& edge : scene.ground.edges()) {
         const std::int64_t above =
-            edge.upper_tenth_mm - scene.stance_tenth_mm - tread.rise_tenth_mm;
+            edge.upper_tenth_mm - scene.stance.plane.height_tenth_mm - tread.rise_tenth_mm;
         if (!is_sound(edge) || magnitude(above) > limits.patch_residual_tenth_mm ||
             edge.upper_tenth_mm - std::int64_t{edge.lower_tenth_mm} <= limits.drop_tenth_mm)
             continue;
@@ -363,7 +363,8 @@ void check_body_lowered(const Scene& scene, const Treads& treads, Findings& find
             grid::convex_hull(corners_of(scene.sweep.target, part.box, margin));
         grid::for_each_overlapped_cell(area, grid, [&](std::int64_t ix, std::int64_t iy) {
             const GroundCell cell = scene.ground.cell(ix, iy);
-            const std::int64_t above = cell.height_tenth_mm - scene.stance_tenth_mm - rise;
+            const std::int64_t above =
+                cell.height_tenth_mm - scene.stance.plane.height_tenth_mm - rise;
             if (cell.known() && above > part.low_tenth_mm)
                 findings.deny(Reason::body_clearance,
                               finding_at(ix, iy, Foot::none, above, part.low_tenth_mm));
@@ -419,7 +420,7 @@ void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept 
     const StepLimits& step = step_limits(scene);
     const Ground& ground = scene.ground;
     for (const FootSweep& foot : scene.sweep.feet) {
-        const grid::RowRuns way(foot.corridor, ground.grid());
+        const grid::RowRuns way(foot.corridor.around, ground.grid());
         const auto join = [&](const GroundCell& cell, std::int64_t ix, std::int64_t iy) {
             if (!way.run(iy).contains(ix)) return;
             const GroundCell other = ground.cell(ix, iy);
@@ -433,7 +434,7 @@ void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept 
                 reachable.add(next.component);
         };
         grid::for_each_overlapped_cell(
-            foot.corridor, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+            foot.corridor.around, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                 const GroundCell cell = ground.cell(ix, iy);
                 for (std::int64_t i = 1; cell.knowledge == Knowledge::measured && i <= kBetween;
                      ++i) {

@@ -61,7 +61,7 @@ struct OnTreads {
                 machine.movements[query.command],
                 *ground,
                 sweep,
-                query.stance_height_tenth_mm};
+                Stance::level_at(query.stance_height_tenth_mm)};
     }
     [[nodiscard]] std::size_t index(std::int64_t ix, std::int64_t iy) const {
         return static_cast<std::size_t>(iy * map->nx + ix);

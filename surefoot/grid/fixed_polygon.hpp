@@ -128,6 +128,7 @@ class RowRuns {
         rows_ = {floor_div(low.y, side_), floor_div(high.y - 1, side_)};
     }
     [[nodiscard]] FixedRun rows() const noexcept { return rows_; }
+    [[nodiscard]] FixedRun columns() const noexcept { return columns_; }
     /// Returns the cells of row `iy` whose interior overlaps the polygon. Every `iy` is valid.
     [[nodiscard]] FixedRun run(std::int64_t iy) const noexcept {
         if (iy < rows_.first || iy > rows_.last) return {};

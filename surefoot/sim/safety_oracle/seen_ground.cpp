@@ -42,6 +42,11 @@ SceneTruth until(const SceneTruth& truth, std::int64_t until_ns) {
     return so_far;
 }
 
+PlanarPose planar(const Pose& T_world_body) {
+    const Eigen::Vector3d& at_m = T_world_body.translation_m;
+    return PlanarPose::of(at_m.x(), at_m.y(), yaw_rad(T_world_body));
+}
+
 /// Calls test(ix, iy) for all cells whose centre `area` covers, until one fails. Returns true if
 /// none failed.
 template <typename Test>
@@ -71,6 +76,11 @@ SeenGround::SeenGround(const SceneTruth& truth,
     : lattice_(lattice_around(center_m, radius_m + reach_of(machine))),
       seen_(visibility_mask(until(truth, until_ns), lattice_, {}, executor)) {}
 
+bool SeenGround::is_known(int ix, int iy, const VouchedGround& vouched) const {
+    return (lattice_.center_m(ix, iy) - vouched.center_m).norm() <= vouched.radius_m ||
+           (seen_.contains(ix, iy) && seen_.at(ix, iy) != 0);
+}
+
 bool SeenGround::holds_zone(const Machine& machine,
                             const Pose& T_world_body,
                             int command,
@@ -78,18 +88,32 @@ bool SeenGround::holds_zone(const Machine& machine,
     const Movement* movement = rules::movement_of(machine, command);
     if (movement == nullptr) return false;
     const rules::Figures figures = rules::figures_of(machine, *movement);
-    const PlanarPose T_world_start = PlanarPose::of(
-        T_world_body.translation_m.x(), T_world_body.translation_m.y(), yaw_rad(T_world_body));
-    const PlanarPose T_world_target = T_world_start * figures.T_start_target;
-    const auto known = [&](int ix, int iy) {
-        if ((lattice_.center_m(ix, iy) - vouched.center_m).norm() <= vouched.radius_m) return true;
-        return seen_.contains(ix, iy) && seen_.at(ix, iy) != 0;
-    };
+    const PlanarPose T_world_start = planar(T_world_body);
+    const auto known = [&](int ix, int iy) { return is_known(ix, iy, vouched); };
     return std::all_of(figures.feet.begin(), figures.feet.end(), [&](const Rect& foot) {
         const SweptBox way(
             grown(foot, figures.foot_margin_m), T_world_start, figures.T_start_target);
-        const SweptBox band(grown(foot, figures.band_m), T_world_target, {});
+        const SweptBox band(
+            grown(foot, figures.band_m), T_world_start * figures.T_start_target, {});
         return all_in(way, lattice_, known) && all_in(band, lattice_, known);
+    });
+}
+
+bool SeenGround::holds_body(const Machine& machine,
+                            const Pose& T_world_body,
+                            int command,
+                            const VouchedGround& vouched) const {
+    const Movement* movement = rules::movement_of(machine, command);
+    if (movement == nullptr) return false;
+    const rules::Figures figures = rules::figures_of(machine, *movement);
+    const PlanarPose T_world_start = planar(T_world_body);
+    return std::all_of(figures.body.begin(), figures.body.end(), [&](const auto& part) {
+        const Rect box = grown(part.box, figures.sway_m);
+        const SweptBox here(box, T_world_start, {});
+        return all_in(
+            SweptBox(box, T_world_start, figures.T_start_target), lattice_, [&](int ix, int iy) {
+                return here.covers(lattice_.center_m(ix, iy)) || is_known(ix, iy, vouched);
+            });
     });
 }
 

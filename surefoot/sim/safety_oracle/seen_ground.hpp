@@ -33,15 +33,25 @@ class SeenGround {
                Executor& executor);
 
     /// True if the whole zone of a movement was seen or is vouched for: the landing feet with their
-    /// drop bands, and the ways of the feet with their margins. The space of the body is not part
-    /// of the zone. False for an unusable command.
+    /// drop bands, and the ways of the feet with their margins. The ground below the body is not
+    /// part of the zone. False for an unusable command.
     /// `T_world_body`: true pose of base_link before the movement.
     [[nodiscard]] bool holds_zone(const Machine& machine,
                                   const Pose& T_world_body,
                                   int command,
                                   const VouchedGround& vouched) const;
 
+    /// The same for the ground below the space that the body, with its sway, enters. The body fills
+    /// its present space itself.
+    [[nodiscard]] bool holds_body(const Machine& machine,
+                                  const Pose& T_world_body,
+                                  int command,
+                                  const VouchedGround& vouched) const;
+
   private:
+    /// True if the cell was seen or is vouched for.
+    [[nodiscard]] bool is_known(int ix, int iy, const VouchedGround& vouched) const;
+
     Lattice lattice_;
     Image<std::uint8_t> seen_;
 };

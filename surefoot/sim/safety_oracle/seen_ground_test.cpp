@@ -63,6 +63,24 @@ TEST(SeenGround, AnOperatorVouchesForThePlacesInTheDisc) {
     EXPECT_FALSE(is_seen(truth, kForward, kStepBack_ns, {{3.0, 0.0}, kReach_m}));
 }
 
+TEST(SeenGround, TheBodyNeedsOnlyTheGroundThatItEnters) {
+    const SceneTruth truth = approach(std::move(World().floor().scene));
+    Serial serial;
+    const Machine machine = testing::rex();
+    const Pose here = standing(0.0, 0.0, 0.0);
+    const SeenGround seen(truth, kStepBack_ns, machine, {0.0, 0.0}, 0.0, serial);
+    EXPECT_TRUE(seen.holds_body(machine, here, kForward, {}));
+    EXPECT_FALSE(seen.holds_body(machine, here, kBack, {})) << "never in view from x = -1";
+    EXPECT_TRUE(seen.holds_body(machine, here, kBack, {{0.0, 0.0}, 1.0}));
+    Machine still = machine;
+    still.movements[kForward].forward_tenth_mm = 0;
+    SceneTruth blind = truth;
+    blind.trajectory.clear();
+    EXPECT_TRUE(SeenGround(blind, kStepBack_ns, still, {0.0, 0.0}, 0.0, serial)
+                    .holds_body(still, here, kForward, {}))
+        << "the body fills its space itself";
+}
+
 TEST(SeenGround, NoMovementHasNoZone) {
     const SceneTruth truth = approach(std::move(World().floor().scene));
     for (const int command : {-1, 0, 2, 27}) EXPECT_FALSE(is_seen(truth, command)) << command;

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plane of the ground under the present feet, and steps on ramps.
+#include "surefoot/gate/stance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "surefoot/gate/gate_testing.hpp"
+#include "surefoot/gate/verdict_testing.hpp"
+
+namespace surefoot::gate::testing {
+namespace {
+
+constexpr double kRamp = 1.0 / 12.0;
+/// Heights are rounded to 0.1 mm, and pairs of cells are 0.1 m apart or more.
+constexpr double kRounded = 1e-3;
+
+/// Sets the height of every cell.
+template <typename Height>
+Terrain shaped(Height&& height_m) {
+    Terrain terrain;
+    for (int v = 0; v < 240; ++v) {
+        for (int u = 0; u < 240; ++u) {
+            const Eigen::Vector2d at_m = terrain.geometry.center_m({u, v});
+            terrain.height.at(u, v) = static_cast<float>(height_m(at_m.x(), at_m.y()));
+        }
+    }
+    return terrain;
+}
+
+/// A ramp along the path of a machine with this yaw, which begins `start_m` ahead of base_link.
+Terrain ramp(double start_m, double rise = kRamp, double yaw = 0.0) {
+    return shaped([=](double x, double y) {
+        return rise * std::max(0.0, std::cos(yaw) * x + std::sin(yaw) * y - start_m);
+    });
+}
+
+Stance stance_on(Terrain& terrain, double yaw = 0.0, bool level = false) {
+    const auto map = terrain.snapshot();
+    const Machine machine = rex();
+    const Query query = make_query(kForward, 0.0, 0.0, std::cos(yaw), std::sin(yaw));
+    const Sweep sweep = sweep_of(
+        machine, fixed_pose(0, 0, query.cos_yaw, query.sin_yaw), machine.movements[kForward]);
+    return find_stance(Ground(*map, query, machine.limits), query, sweep, level);
+}
+
+TEST(Stance, continues_the_slope_under_the_feet_at_every_yaw) {
+    for (const double yaw : {0.0, 0.4, 0.785, 1.2, 1.571, -2.0, 3.0}) {
+        Terrain terrain = ramp(-9.0, kRamp, yaw);
+        const Stance stance = stance_on(terrain, yaw);
+        ASSERT_TRUE(stance.known);
+        for (const StancePlane& plane : {stance.plane, stance.median_plane}) {
+            const auto slope = plane.tangents(250);
+            EXPECT_NEAR(std::cos(yaw) * slope.x + std::sin(yaw) * slope.y, kRamp, kRounded) << yaw;
+            EXPECT_NEAR(std::cos(yaw) * slope.y - std::sin(yaw) * slope.x, 0.0, kRounded) << yaw;
+            for (const auto& [ix, iy] : {std::pair{120, 120}, {140, 110}, {90, 150}}) {
+                const Eigen::Vector2d at_m = terrain.geometry.center_m({ix, iy});
+                const double z_m =
+                    kRamp * (std::cos(yaw) * at_m.x() + std::sin(yaw) * at_m.y() + 9.0);
+                EXPECT_NEAR(1e-4 * static_cast<double>(plane.at(ix, iy)), z_m, kRounded) << yaw;
+            }
+        }
+        for (const auto& foot : stance.feet_tenth_mm)
+            EXPECT_NEAR(static_cast<double>(*foot), 0, 10);
+    }
+}
+
+TEST(Stance, a_sill_under_the_toes_or_one_foot_higher_tilts_nothing) {
+    Terrain sill;
+    sill.box(0.17, 0.30, -1.0, 1.0, 0.02);
+    Terrain half;
+    half.box(-1.0, 1.0, 0.0, 1.0, 0.015);
+    for (Terrain* terrain : {&sill, &half}) {
+        const Stance stance = stance_on(*terrain);
+        EXPECT_EQ(stance.plane.slope_x, 0);
+        EXPECT_EQ(stance.plane.slope_y, 0);
+    }
+    const Stance stance = stance_on(half);
+    EXPECT_EQ(*stance.feet_tenth_mm[0] - *stance.feet_tenth_mm[1], 150);
+}
+
+TEST(Stance, noise_on_level_ground_slopes_only_the_likely_plane) {
+    int sloped = 0;
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+        std::mt19937_64 random(seed);
+        std::normal_distribution<double> noise_m(0.0, 0.004);
+        Terrain terrain = shaped([&](double, double) { return noise_m(random); });
+        const Stance stance = stance_on(terrain);
+        EXPECT_EQ(stance.plane.slope_x, 0) << seed;
+        EXPECT_EQ(stance.plane.slope_y, 0) << seed;
+        sloped += stance.median_plane.slope_x != 0 ? 1 : 0;
+    }
+    EXPECT_GT(sloped, 40);
+}
+
+TEST(Stance, treads_are_level_and_unknown_ground_gives_no_stance) {
+    Terrain terrain = ramp(-9.0);
+    const Stance level = stance_on(terrain, 0.0, true);
+    EXPECT_EQ(level.plane.slope_x, 0);
+    EXPECT_EQ(level.median_plane.slope_x, 0);
+    Terrain unknown = shaped([](double, double) { return std::nan(""); });
+    EXPECT_FALSE(stance_on(unknown).known);
+}
+
+TEST(Ramp, of_1_in_12_is_walked_up_and_down_in_full_steps) {
+    for (const double rise : {kRamp, -kRamp}) {
+        Terrain terrain = ramp(-9.0, rise);
+        expect_ok(ask(terrain, kForward));  // the toes land 53 mm higher than base_link stands
+        expect_ok(ask(terrain, kBackward));
+        expect_ok(ask(terrain, kLeft));
+    }
+}
+
+TEST(Ramp, is_entered_and_left_only_in_steps_that_keep_the_limit_of_a_step) {
+    // The toes reach 0.64 m ahead: on a ramp that begins 0.42 m ahead they land 18 mm higher.
+    Terrain late = ramp(0.42);
+    expect_ok(ask(late, kForward));
+    Terrain early = ramp(0.35);  // 24 mm
+    expect_refused(ask(early, kForward), Reason::step_too_high);
+    // From the ramp back to the floor: the floor lies above the continued ramp.
+    Terrain behind = ramp(-0.13);
+    expect_refused(ask(behind, kBackward), Reason::step_too_high);
+    // From the floor down a ramp.
+    Terrain down = ramp(0.35, -kRamp);
+    expect_refused(ask(down, kForward), Reason::step_too_low);
+}
+
+TEST(Ramp, a_step_on_it_counts_from_the_ramp) {
+    const auto with_step = [](double height_m) {
+        return shaped([=](double x, double) { return kRamp * x + (x > 0.26 ? height_m : 0.0); });
+    };
+    Terrain low = with_step(0.015);
+    expect_ok(ask(low, kForward));
+    Terrain high = with_step(0.026);
+    expect_refused(ask(high, kForward), Reason::step_too_high);
+    Terrain hole = with_step(-0.026);
+    expect_refused(ask(hole, kForward), Reason::step_too_low);
+    Terrain obstacle = with_step(0.05);
+    EXPECT_TRUE(ask(obstacle, kForward).reasons.contains(Reason::corridor_blocked));
+}
+
+TEST(Ramp, whose_slope_breaks_the_tilt_limit_is_refused) {
+    Terrain terrain = ramp(-9.0, 0.125);  // 7.1 deg
+    expect_refused(ask(terrain, kForward), Reason::slope);
+}
+
+}  // namespace
+}  // namespace surefoot::gate::testing
