@@ -37,6 +37,17 @@ Corners corners_of(const GroundBox& box, const FixedPose& pose, std::int64_t mar
             to_odom(pose, x - half_x, y + half_y)};
 }
 
+/// An edge of a polygon, counter-clockwise.
+struct Edge {
+    grid::FixedPoint from;
+    grid::FixedPoint to;
+};
+Edge edge_of(const grid::FixedConvex& polygon, int i) noexcept {
+    const int next = i + 1 < polygon.count ? i + 1 : 0;
+    return {polygon.vertices[static_cast<std::size_t>(i)],
+            polygon.vertices[static_cast<std::size_t>(next)]};
+}
+
 grid::FixedConvex hull_of(const Corners& a, const Corners& b) noexcept {
     std::array<grid::FixedPoint, 8> points{};
     std::copy(a.begin(), a.end(), points.begin());
@@ -44,15 +55,38 @@ grid::FixedConvex hull_of(const Corners& a, const Corners& b) noexcept {
     return grid::convex_hull(points);
 }
 
-/// Returns the region that a box passes over, widened by a margin.
-Region swept(const GroundBox& box,
-             const FixedPose& start,
-             const FixedPose& target,
-             std::int64_t margin) noexcept {
-    const auto hull = [&](std::int64_t by) {
-        return hull_of(corners_of(box, start, by), corners_of(box, target, by));
-    };
-    return {hull(margin + kBesideTenthMm), hull(margin)};
+/// Returns the hull of a box at two poses, widened by a margin.
+grid::FixedConvex swept(const GroundBox& box,
+                        const FixedPose& start,
+                        const FixedPose& target,
+                        std::int64_t margin) noexcept {
+    return hull_of(corners_of(box, start, margin), corners_of(box, target, margin));
+}
+
+/// Returns the edges of `here` beyond which `there` reaches by more than about a millimetre.
+std::uint32_t edges_left(const grid::FixedConvex& here, const Corners& there) noexcept {
+    constexpr std::int64_t kRounding = 10;
+    std::uint32_t edges = 0;
+    for (int i = 0; i < here.count; ++i) {
+        const auto& [a, b] = edge_of(here, i);
+        const std::int64_t size = std::max(b.x - a.x, a.x - b.x) + std::max(b.y - a.y, a.y - b.y);
+        for (const grid::FixedPoint& corner : there) {
+            if (grid::cross(a, b, corner) < -kRounding * size)
+                edges |= std::uint32_t{1} << static_cast<unsigned>(i);
+        }
+    }
+    return edges;
+}
+
+PartSweep part_sweep(const GroundBox& box,
+                     const FixedPose& start,
+                     const FixedPose& target,
+                     std::int64_t margin) noexcept {
+    PartSweep sweep;
+    sweep.way = swept(box, start, target, margin);
+    sweep.here = grid::convex_hull(corners_of(box, start, margin));
+    sweep.leaves = edges_left(sweep.here, corners_of(box, target, margin));
+    return sweep;
 }
 
 FootSweep foot_sweep(Foot foot,
@@ -66,8 +100,11 @@ FootSweep foot_sweep(Foot foot,
     sweep.stance = grid::convex_hull(corners_of(box, start, 0));
     sweep.landing = grid::convex_hull(corners_of(box, target, 0));
     sweep.landing_center = to_odom(target, box.center_x_tenth_mm, box.center_y_tenth_mm);
-    sweep.corridor = swept(box, start, target, limits.foot_margin_tenth_mm + drift_margin);
-    sweep.band = swept(box, target, target, limits.drop_band_tenth_mm + drift_margin);
+    const std::int64_t corridor = limits.foot_margin_tenth_mm + drift_margin;
+    sweep.corridor = swept(box, start, target, corridor + kBesideTenthMm);
+    const std::int64_t band = limits.drop_band_tenth_mm + drift_margin;
+    sweep.band = grid::convex_hull(corners_of(box, target, band + kBesideTenthMm));
+    sweep.edges = grid::convex_hull(corners_of(box, target, band + kSmearTenthMm));
     return sweep;
 }
 
@@ -98,6 +135,23 @@ FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept {
     return target;
 }
 
+bool PartSweep::stays_in(std::int64_t ix,
+                         std::int64_t iy,
+                         const grid::FixedGrid& grid) const noexcept {
+    const std::int64_t x = grid.origin_x + ix * grid.side;
+    const std::int64_t y = grid.origin_y + iy * grid.side;
+    const Corners cell{
+        {{x, y}, {x + grid.side, y}, {x + grid.side, y + grid.side}, {x, y + grid.side}}};
+    for (int i = 0; i < here.count; ++i) {
+        if ((leaves >> static_cast<unsigned>(i) & 1U) == 0) continue;
+        const auto& [a, b] = edge_of(here, i);
+        for (const grid::FixedPoint& corner : cell) {
+            if (grid::cross(a, b, corner) < 0) return false;
+        }
+    }
+    return true;
+}
+
 void Extent::include(grid::FixedPoint p) noexcept {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
@@ -110,10 +164,10 @@ Extent extent_of(const Sweep& sweep) noexcept {
     };
     for (const FootSweep& foot : sweep.feet) {
         include(foot.stance);
-        include(foot.corridor.around);
-        include(foot.band.around);
+        include(foot.corridor);
+        include(foot.edges);
     }
-    for (const Sweep::Part& part : sweep.body) include(part.region.around);
+    for (const PartSweep& part : sweep.body) include(part.way);
     return extent;
 }
 
@@ -137,9 +191,8 @@ Sweep sweep_of(const Machine& machine,
             Foot::right, machine.right_foot, machine.limits, start, sweep.target, margin_tenth_mm)};
     std::size_t part = 0;
     for (const auto& [box, low, high] : machine.body.all()) {
-        const std::int64_t sway = machine.body.sway_tenth_mm;
-        sweep.body[part++] = {swept(box, start, sweep.target, sway + margin_tenth_mm),
-                              grid::convex_hull(corners_of(box, start, sway))};
+        const std::int64_t margin = machine.body.sway_tenth_mm + kBesideTenthMm + margin_tenth_mm;
+        sweep.body[part++] = part_sweep(box, start, sweep.target, margin);
     }
     return sweep;
 }

@@ -16,6 +16,10 @@ namespace surefoot::gate {
 /// distance (docs/lab/gate_scenes.md).
 inline constexpr std::int64_t kBesideTenthMm = 250;
 
+/// Matchers show ground beyond the edge of a deep drop. Width of the strip around a drop band in
+/// which the map shows this drop at the latest (docs/decisions/068-drops-beyond-the-band.md).
+inline constexpr std::int64_t kSmearTenthMm = 1'000;
+
 /// A pose in the plane: position in units of 0.1 mm, cosine and sine of the yaw times 2^20.
 struct FixedPose {
     static constexpr int kFractionBits = 20;
@@ -38,35 +42,35 @@ struct FixedPose {
 /// Returns the pose of base_link after the movement.
 [[nodiscard]] FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept;
 
-/// A region that a movement needs.
-struct Region {
-    /// Here mapped objects count: wider than `way` by kBesideTenthMm.
-    grid::FixedConvex around;
-    /// Here the ground must be known. Unlike a mapped object, unknown ground is not displaced.
-    grid::FixedConvex way;
-};
-
-/// The regions that one foot needs for a movement.
+/// The regions that one foot needs for a movement. kBesideTenthMm widens corridor and band, too.
 struct FootSweep {
     Foot foot = Foot::none;
     grid::FixedConvex stance;   ///< sole area at the start
     grid::FixedConvex landing;  ///< sole area at the target
     grid::FixedPoint landing_center;
-    Region corridor;  ///< hull of stance and landing, widened by `foot_margin`
-    Region band;      ///< landing box, widened by `drop_band`
+    grid::FixedConvex corridor;  ///< hull of stance and landing, widened by `foot_margin`
+    grid::FixedConvex band;      ///< landing box, widened by `drop_band`
+    grid::FixedConvex edges;     ///< landing box, widened by `drop_band` and kSmearTenthMm
+};
+
+/// The areas of one part of the body, widened by sway and kBesideTenthMm.
+struct PartSweep {
+    grid::FixedConvex way;   ///< hull of its box at start and target
+    grid::FixedConvex here;  ///< its box at the start
+    /// Bit i: the part leaves `here` across its edge from vertex i to vertex i + 1.
+    std::uint32_t leaves = 0;
+
+    /// For a cell that overlaps `here`: true if the movement needs no more of it than standing
+    /// does.
+    [[nodiscard]] bool stays_in(std::int64_t ix,
+                                std::int64_t iy,
+                                const grid::FixedGrid& grid) const noexcept;
 };
 
 /// All regions that a movement needs, in odom.
 struct Sweep {
     std::array<FootSweep, 2> feet;  ///< left, right
-    /// The areas of one part of the body.
-    struct Part {
-        Region region;  ///< hull of its box at start and target, widened by `sway`
-        /// Its box at the start, wider by sway. The part itself fills the cells that overlap it,
-        /// but for slivers narrower than a cell. So nothing else is there.
-        grid::FixedConvex filled;
-    };
-    std::array<Part, Body::kMaxParts> body;
+    std::array<PartSweep, Body::kMaxParts> body;
     FixedPose target;
 };
 

@@ -100,9 +100,9 @@ TEST(Footprints, corridor_and_body_hull_hold_every_pose_on_the_way) {
                     EXPECT_LE(outside_by(hull, pose.point(u, v)), 0.0) << code << " at " << s;
                 }
             };
-            expect_inside(machine.left_foot, sweep.feet[0].corridor.way);
-            expect_inside(machine.right_foot, sweep.feet[1].corridor.way);
-            expect_inside(machine.body.parts[0].box, sweep.body[0].region.way);
+            expect_inside(machine.left_foot, sweep.feet[0].corridor);
+            expect_inside(machine.right_foot, sweep.feet[1].corridor);
+            expect_inside(machine.body.parts[0].box, sweep.body[0].way);
         }
     }
 }
@@ -138,40 +138,33 @@ TEST(Footprints, every_region_has_its_margin_to_the_tenth_of_a_millimetre) {
         expect_box("stance", box_around(left.stance), {-1260, 850}, {2400, 2750});
         expect_box("landing", box_around(left.landing), {2740, 850}, {6400, 2750});
         expect_box("corridor",
-                   box_around(left.corridor.around),
+                   box_around(left.corridor),
                    {-1260 - 450 - extra, 850 - 450 - extra},
                    {6400 + 450 + extra, 2750 + 450 + extra});
         expect_box("band",
-                   box_around(left.band.around),
+                   box_around(left.band),
                    {2740 - 1250 - extra, 850 - 1250 - extra},
                    {6400 + 1250 + extra, 2750 + 1250 + extra});
+        expect_box("edges",
+                   box_around(left.edges),
+                   {2740 - 2000 - extra, 850 - 2000 - extra},
+                   {6400 + 2000 + extra, 2750 + 2000 + extra});
         const FootSweep& right = sweep.feet[1];
         EXPECT_EQ(right.foot, Foot::right);
         EXPECT_EQ(right.landing_center, (grid::FixedPoint{4570, -1800}));
         expect_box("right", box_around(right.landing), {2740, -2750}, {6400, -850});
         expect_box("body",
-                   box_around(sweep.body[0].region.around),
+                   box_around(sweep.body[0].way),
                    {-3300 - 750 - extra, -3225 - 750 - extra},
                    {7300 + 750 + extra, 3225 + 750 + extra});
-        // The ground must be known without the 25 mm.
-        expect_box("way of the foot",
-                   box_around(left.corridor.way),
-                   {-1260 - 200 - extra, 850 - 200 - extra},
-                   {6400 + 200 + extra, 2750 + 200 + extra});
-        expect_box("known band",
-                   box_around(left.band.way),
-                   {2740 - 1000 - extra, 850 - 1000 - extra},
-                   {6400 + 1000 + extra, 2750 + 1000 + extra});
-        expect_box("way of the body",
-                   box_around(sweep.body[0].region.way),
-                   {-3300 - 500 - extra, -3225 - 500 - extra},
-                   {7300 + 500 + extra, 3225 + 500 + extra});
-        // The space that the body fills now does not depend on the drift.
-        expect_box("filled", box_around(sweep.body[0].filled), {-3800, -3725}, {3800, 3725});
-        EXPECT_EQ(sweep.body[1].region.around.count, 0) << "there is one part";
-        // Landing and body reach farthest; each side of the extent belongs to a region.
+        expect_box("here",
+                   box_around(sweep.body[0].here),
+                   {-3300 - 750 - extra, -3225 - 750 - extra},
+                   {3300 + 750 + extra, 3225 + 750 + extra});
+        EXPECT_EQ(sweep.body[1].way.count, 0) << "there is one part";
+        // Body and edges reach farthest; each side of the extent belongs to a region.
         expect_box(
-            "all", extent_of(sweep), {-4050 - extra, -4000 - extra}, {8050 + extra, 4000 + extra});
+            "all", extent_of(sweep), {-4050 - extra, -4750 - extra}, {8400 + extra, 4750 + extra});
     }
 }
 
@@ -200,10 +193,11 @@ TEST(Footprints, all_of_a_sweep_lies_in_its_extent_and_touches_its_four_sides) {
         for (const FootSweep& foot : sweep.feet) {
             look(foot.stance);
             look(foot.landing);
-            look(foot.corridor.around);
-            look(foot.band.around);
+            look(foot.corridor);
+            look(foot.band);
+            look(foot.edges);
         }
-        look(sweep.body[0].region.around);
+        look(sweep.body[0].way);
         expect_box("all", all, found.low, found.high);
     }
 }
@@ -214,8 +208,8 @@ TEST(Footprints, the_extent_holds_feet_that_stand_far_out) {
     machine.left_foot.center_y_tenth_mm = 20'000;
     machine.right_foot.center_y_tenth_mm = -20'000;
     const Sweep sweep = sweep_of(machine, FixedPose{}, machine.movements[kForward]);
-    EXPECT_EQ(extent_of(sweep).high.y, 20'000 + 950 + 1250) << "the drop band";
-    EXPECT_EQ(extent_of(sweep).low.y, -20'000 - 950 - 1250);
+    EXPECT_EQ(extent_of(sweep).high.y, 20'000 + 950 + 2000) << "drops beyond the band";
+    EXPECT_EQ(extent_of(sweep).low.y, -20'000 - 950 - 2000);
     machine.movements[kForward].forward_tenth_mm = -20'000;
     machine.limits.foot_margin_tenth_mm = 2'000;
     const Sweep back = sweep_of(machine, FixedPose{}, machine.movements[kForward]);

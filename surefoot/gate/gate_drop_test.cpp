@@ -24,8 +24,37 @@ TEST(Gate, given_a_drop_in_the_band_beyond_the_toes_then_drop_off) {
     platform.box(0.70, 3.0, -3.0, 3.0, -0.3);  // 0.06 m beyond the toes at 0.64 m
     expect_refused(ask(platform, kForward), Reason::drop_off);
     Terrain farther;
-    farther.box(0.80, 3.0, -3.0, 3.0, -0.3);
+    farther.box(0.87, 3.0, -3.0, 3.0, -0.3);
     expect_ok(ask(farther, kForward));
+}
+
+/// The map can show ground beyond the edge of a drop, so a drop just beyond the band counts too.
+TEST(Gate, given_a_drop_just_beyond_the_band_then_it_must_be_shallow_or_surely_none) {
+    const auto ask_with = [](double height_m, double sigma_m) {
+        Terrain floor;
+        floor.box(0.775, 0.825, 0.10, 0.25, height_m);
+        floor.paint(floor.variance, 0.775, 0.825, 0.10, 0.25, sigma_m * sigma_m);
+        return ask(floor, kForward);
+    };
+    expect_ok(ask_with(-0.049, 0.004));
+    expect_refused(ask_with(-0.051, 0.004), Reason::drop_off);
+    // A kerb of 75 mm must be out of the question.
+    expect_ok(ask_with(-0.025, 0.0146));
+    expect_refused(ask_with(-0.025, 0.0148), Reason::not_resolvable);
+    // Unknown ground counts only if lines of sight show that it is low.
+    for (const auto& [bound, allowed] : {std::pair{-499, true}, {-500, false}}) {
+        Terrain floor;
+        const auto map = floor.snapshot();
+        const std::size_t at = cell_at(*map, 0.8, -0.18);
+        map->source[at] = grid::EvidenceSource::unknown;
+        map->height_tenth_mm[at] = bound;
+        seal(*map);
+        const Verdict verdict = decide(rex(), query_at_body(kForward, *map), *map, kReady, kNowNs);
+        if (allowed)
+            expect_ok(verdict);
+        else
+            expect_refused(verdict, Reason::drop_off);
+    }
 }
 
 TEST(Gate, given_only_the_far_side_of_a_drop_was_seen_then_its_edge_is_a_drop) {

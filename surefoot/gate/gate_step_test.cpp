@@ -2,6 +2,7 @@
 // How high and how low a foot may land, and on which surface.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "surefoot/core/unknown.hpp"
@@ -50,8 +51,8 @@ TEST(Gate, a_toe_on_the_beginning_of_a_ramp_is_a_step_though_the_middle_of_the_f
             for (int v = 0; v < 240; ++v) {
                 for (int u = 0; u < 240; ++u) {
                     const double x_m = ramp.geometry.center_m({u, v}).x();
-                    if (x_m > begin_m)
-                        ramp.height.at(u, v) = static_cast<float>(sign * (x_m - begin_m) / 8.0);
+                    const double on_m = std::clamp(x_m - begin_m, 0.0, 0.70 - begin_m);
+                    ramp.height.at(u, v) = static_cast<float>(sign * on_m / 8.0);
                 }
             }
             const Verdict verdict = ask(ramp, kForward);

@@ -70,7 +70,7 @@ TEST(Gate, ground_below_the_body_may_be_unknown_where_the_space_is_free) {
         return decide(machine, query_at_body(code, *map), *map, kReady, kNowNs);
     };
     constexpr std::int32_t kNothing = grid::MapSnapshot::kUnknownHeight;
-    constexpr double kAhead_m = 0.7625;  // beyond the drop bands of the feet
+    constexpr double kAhead_m = 0.8;  // beyond the drop bands of the feet
     // Behind the heels and between the feet the body stands now.
     expect_ok(ask_about(-0.35, 0.0, kNothing, kForward));
     expect_ok(ask_about(0.1, 0.0, kNothing, kForward));
@@ -80,9 +80,27 @@ TEST(Gate, ground_below_the_body_may_be_unknown_where_the_space_is_free) {
     // Its lower edge is 0.144 m over the soles. Lines of sight below it show free space there ...
     expect_ok(ask_about(kAhead_m, 0.0, 1440, kForward));
     expect_refused(ask_about(kAhead_m, 0.0, 1441, kForward), Reason::unknown_cells);
-    // ... but more than 50 mm below the ground they show the edge of a drop.
+    // ... also below the ground, unless they show a drop near a foot.
     expect_ok(ask_about(kAhead_m, 0.0, -499, kForward));
-    expect_refused(ask_about(kAhead_m, 0.0, -500, kForward), Reason::unknown_cells);
+    expect_refused(ask_about(kAhead_m, 0.0, -500, kForward), Reason::drop_off);
+    // A small step to the left brings the body over new ground there, and only there. With its
+    // margins it reaches 0.3975 m to each side now.
+    const auto half_step = [&](double y) {
+        Terrain floor;
+        const auto map = floor.snapshot();
+        const std::size_t at = cell_at(*map, -0.30, y);
+        map->source[at] = grid::EvidenceSource::unknown;
+        map->height_tenth_mm[at] = kNothing;
+        seal(*map);
+        Machine small = machine;
+        small.movements[kLeft].left_tenth_mm = 500;
+        return decide(small, query_at_body(kLeft, *map), *map, kReady, kNowNs);
+    };
+    expect_ok(half_step(0.36));
+    expect_refused(half_step(0.39), Reason::unknown_cells);
+    expect_refused(half_step(0.44), Reason::unknown_cells);
+    expect_ok(half_step(0.46));
+    expect_ok(half_step(-0.39));
     // Under a foot and in its drop band nothing but known ground counts.
     expect_refused(ask_about(0.5, 0.18, 0, kForward), Reason::unknown_cells);
     expect_refused(ask_about(0.72, 0.18, 0, kForward), Reason::unknown_cells);

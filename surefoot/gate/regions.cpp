@@ -160,25 +160,22 @@ void check_unsure(const Scene& scene,
 }
 
 /// Tests every cell of a region: `always(place)` for a cell inside the map, `test(place)` for a
-/// known cell. An unknown cell of `region.way` is refused. Ends at the first such cell outside the
-/// map, because further ones add nothing.
+/// known cell. Ends at the first cell outside the map, because further ones add nothing.
 template <typename Test, typename Always>
 void check_region(const Scene& scene,
-                  const Region& region,
+                  const grid::FixedConvex& region,
                   Foot foot,
                   Findings& findings,
                   Test&& test,
                   Always&& always) noexcept {
-    const grid::FixedGrid& grid = scene.ground.grid();
-    const grid::RowRuns way(region.way, grid);
-    grid::for_each_overlapped_cell(region.around, grid, [&](std::int64_t ix, std::int64_t iy) {
-        const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
-        const bool inside = place.cell.knowledge != Knowledge::outside;
-        if (inside) always(place);
-        if (!place.cell.known() && !way.run(iy).contains(ix)) return true;
-        if (check_knowledge(scene, place, findings)) test(place);
-        return inside;
-    });
+    grid::for_each_overlapped_cell(
+        region, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+            const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
+            const bool inside = place.cell.knowledge != Knowledge::outside;
+            if (inside) always(place);
+            if (check_knowledge(scene, place, findings)) test(place);
+            return inside;
+        });
 }
 
 /// The space of the body over some neighbouring cells of a row: from the lowest to the highest part
@@ -216,12 +213,12 @@ class UnknownBelowBody {
     /// in the cell can be (Ground::is_below). The space that a part fills now needs no proof.
     [[nodiscard]] bool is_free(std::int64_t ix, std::int64_t iy) noexcept {
         const std::int64_t ground = scene_.stance.plane.at(ix, iy);
-        if (scene_.ground.is_below(ix, iy, ground - scene_.machine.limits.drop_tenth_mm))
-            return false;
+        const grid::FixedGrid& grid = scene_.ground.grid();
         if (iy != iy_) find_row(iy);
         const std::span<const BodyPart> parts = scene_.machine.body.all();
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (!way_[i].contains(ix) || filled_[i].contains(ix)) continue;
+            if (!way_[i].contains(ix)) continue;
+            if (here_[i].contains(ix) && scene_.sweep.body[i].stays_in(ix, iy, grid)) continue;
             if (!scene_.ground.is_below(ix, iy, ground + parts[i].low_tenth_mm)) return false;
         }
         return true;
@@ -231,16 +228,16 @@ class UnknownBelowBody {
     void find_row(std::int64_t iy) noexcept {
         iy_ = iy;
         for (std::size_t i = 0; i < scene_.machine.body.all().size(); ++i) {
-            const Sweep::Part& part = scene_.sweep.body[i];
-            way_[i] = grid::RowRuns(part.region.way, scene_.ground.grid()).run(iy);
-            filled_[i] = grid::RowRuns(part.filled, scene_.ground.grid()).run(iy);
+            const PartSweep& part = scene_.sweep.body[i];
+            way_[i] = grid::RowRuns(part.way, scene_.ground.grid()).run(iy);
+            here_[i] = grid::RowRuns(part.here, scene_.ground.grid()).run(iy);
         }
     }
 
     const Scene& scene_;
     std::int64_t iy_ = INT64_MIN;
     std::array<grid::FixedRun, Body::kMaxParts> way_;
-    std::array<grid::FixedRun, Body::kMaxParts> filled_;
+    std::array<grid::FixedRun, Body::kMaxParts> here_;
 };
 
 /// Tests that a known cell in the path of the body leaves room for the parts above it. Here the
@@ -273,6 +270,35 @@ std::int64_t swing_height(const Scene& scene) noexcept {
 }
 
 constexpr auto kNothing = [](const Place&) noexcept {};
+
+/// Requires that no drop shows in or just beyond the drop band of a foot: the map can show ground
+/// beyond the edge of a drop. A cell shows a drop if it lies lower than `drop`, or if it may lie
+/// lower than `drop` plus the depth that a foot tolerates (75 mm for the REX, the lowest kerb), or
+/// if lines of sight over an unknown cell do.
+void check_edges(const Scene& scene, const FootSweep& foot, Findings& findings) noexcept {
+    const GateLimits& limits = scene.machine.limits;
+    const std::int64_t drop = limits.drop_tenth_mm;
+    const auto kerb = static_cast<double>(drop + limits.patch_residual_tenth_mm);
+    grid::for_each_overlapped_cell(
+        foot.edges, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+            const Place place{scene.ground.cell(ix, iy), ix, iy, foot.foot};
+            const std::int64_t ground = scene.stance.plane.at(ix, iy);
+            if (!place.cell.known()) {
+                if (scene.ground.is_below(ix, iy, ground - drop))
+                    deny(findings, Reason::drop_off, place, drop, drop);
+                return true;
+            }
+            const std::int64_t fall = ground - place.cell.height_tenth_mm;
+            if (fall > drop) {
+                deny(findings, Reason::drop_off, place, fall, drop);
+            } else if (!(static_cast<double>(fall) +
+                             limits.sigma_factor * static_cast<double>(place.cell.sigma_tenth_mm) <=
+                         kerb)) {
+                deny(findings, Reason::not_resolvable, place, place.cell.sigma_tenth_mm, drop);
+            }
+            return true;
+        });
+}
 
 }  // namespace
 
@@ -307,7 +333,7 @@ void check_stance(const Scene& scene, Findings& findings) noexcept {
         const auto test = [&](const Place& place) {
             check_below(scene, place, Side::down, limits.drop_tenth_mm, Reason::drop_off, findings);
         };
-        check_region(scene, {foot.stance, foot.stance}, foot.foot, findings, test, kNothing);
+        check_region(scene, foot.stance, foot.foot, findings, test, kNothing);
     }
 }
 
@@ -329,7 +355,7 @@ void check_body(const Scene& scene, Findings& findings) noexcept {
     std::array<grid::RowRuns, Body::kMaxParts> areas;
     grid::FixedRun rows{INT64_MAX, INT64_MIN};
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        areas[i] = {scene.sweep.body[i].region.around, grid};
+        areas[i] = {scene.sweep.body[i].way, grid};
         rows = {std::min(rows.first, areas[i].rows().first),
                 std::max(rows.last, areas[i].rows().last)};
     }
@@ -382,6 +408,7 @@ void check_bands(const Scene& scene, Findings& findings) noexcept {
         };
         check_region(scene, foot.band, foot.foot, findings, test, evidence);
     }
+    for (const FootSweep& foot : scene.sweep.feet) check_edges(scene, foot, findings);
 }
 
 }  // namespace surefoot::gate

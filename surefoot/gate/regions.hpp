@@ -31,12 +31,12 @@ struct Scene {
 /// touch the attested area.
 [[nodiscard]] ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept;
 
-/// Tests of the four kinds of region. Heights count from the plane of the stance. Every cell of
-/// `Region::way` must lie inside the map and be known (measured or attested). The drift of a known
-/// cell must be at most `drift`, and its sigma at most `cell_sigma` (not below the body). If a cell
-/// keeps a height limit, but not by `sigma_factor` sigma, the reason is NOT_RESOLVABLE. A single
-/// cell may have up to twice `cell_sigma` if its eight neighbours pass, because wrong matches that
-/// the map rejects raise the sigma of a cell.
+/// Tests of the four kinds of region. Heights count from the plane of the stance. Except below the
+/// body, every cell must lie inside the map and be known (measured or attested). The drift of a
+/// known cell must be at most `drift`, and its sigma at most `cell_sigma` (not below the body). If
+/// a cell keeps a height limit, but not by `sigma_factor` sigma, the reason is NOT_RESOLVABLE. A
+/// single cell may have up to twice `cell_sigma` if its eight neighbours pass, because wrong
+/// matches that the map rejects raise the sigma of a cell.
 /// - check_stance: no cell under the present feet is a drop.
 void check_stance(const Scene& scene, Findings& findings) noexcept;
 /// - check_corridors: nothing in the path of a foot is higher above the stance than
@@ -47,8 +47,8 @@ void check_corridors(const Scene& scene, Findings& findings) noexcept;
 ///   lines of sight show that nothing in the cell reaches up to the part.
 void check_body(const Scene& scene, Findings& findings) noexcept;
 /// - check_bands: under the landing feet and within `drop_band` around them, no cell lies more than
-///   `drop` below the stance or appears more than `drop_seen` below it, and no cell low enough for
-///   a foot has drop evidence.
+///   `drop` below the stance, and no cell low enough for a foot has drop evidence. Within
+///   kSmearTenthMm around the bands no drop shows either.
 void check_bands(const Scene& scene, Findings& findings) noexcept;
 
 }  // namespace surefoot::gate

@@ -420,9 +420,9 @@ TEST(Body, asks_every_cell_of_every_part_once) {
         floor.machine.body.count = 2;
         std::set<std::pair<std::int64_t, std::int64_t>> cells;
         const Findings findings = floor.look([&](const Scene& scene, Findings& found) {
-            for (const Sweep::Part& part : scene.sweep.body) {
+            for (const PartSweep& part : scene.sweep.body) {
                 grid::for_each_overlapped_cell(
-                    part.region.around, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                    part.way, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                         cells.insert({ix, iy});
                         return true;
                     });

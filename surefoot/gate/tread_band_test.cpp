@@ -25,7 +25,7 @@ struct PlainBand {
     PlainBand(const OnTreads& on, const Treads& treads) {
         for (std::size_t foot = 0; foot < 2; ++foot) {
             const Tread& tread = treads[foot];
-            on.each_cell(on.sweep.feet[foot].band.around, [&](std::int64_t ix, std::int64_t iy) {
+            on.each_cell(on.sweep.feet[foot].band, [&](std::int64_t ix, std::int64_t iy) {
                 look_at(on, tread, foot, ix, iy);
             });
             if (tread.toe_edge != kNone && tread.heel_edge != kNone)
@@ -112,7 +112,7 @@ TEST(TreadBounds, the_band_of_a_tread_asks_each_cell_what_a_plain_reckoning_asks
         }
         const std::size_t foot = rng.below(2);
         std::vector<std::size_t> cells;
-        on.each_cell(on.sweep.feet[foot].band.around,
+        on.each_cell(on.sweep.feet[foot].band,
                      [&](std::int64_t ix, std::int64_t iy) { cells.push_back(on.index(ix, iy)); });
         const std::size_t at = cells[rng.below(cells.size())];
         Treads treads;
@@ -242,7 +242,7 @@ TEST(TreadBounds, a_band_counts_what_an_operator_answers_for_and_ends_where_the_
     EXPECT_FALSE(beyond.reasons().contains(Reason::unknown_cells));
     std::int64_t all = 0;
     for (const FootSweep& foot : on.sweep.feet)
-        on.each_cell(foot.band.around, [&all](std::int64_t, std::int64_t) { ++all; });
+        on.each_cell(foot.band, [&all](std::int64_t, std::int64_t) { ++all; });
     EXPECT_LT(beyond.evidence.cells, all);
 }
 

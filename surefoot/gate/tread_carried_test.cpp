@@ -174,7 +174,7 @@ TEST(TreadBounds, the_carried_part_of_a_foot_is_judged_and_nothing_else) {
         std::set<std::size_t> below;
         on.each_cell(sweep.feet[foot].landing,
                      [&](std::int64_t ix, std::int64_t iy) { below.insert(on.index(ix, iy)); });
-        on.each_cell(on.sweep.feet[foot].band.around, [&](std::int64_t ix, std::int64_t iy) {
+        on.each_cell(on.sweep.feet[foot].band, [&](std::int64_t ix, std::int64_t iy) {
             const std::size_t at = on.index(ix, iy);
             on.map->source[at] = grid::EvidenceSource::unknown;
             const bool judged =

@@ -32,7 +32,7 @@ Tread plain_tread(const OnTreads& on, std::size_t foot) {
     tread.known = all_known && count > 0.0;
     if (!tread.known) return tread;
     tread.rise_tenth_mm = static_cast<std::int64_t>(std::floor(sum / count + 0.5));
-    on.each_cell(on.sweep.feet[foot].band.around, [&](std::int64_t ix, std::int64_t iy) {
+    on.each_cell(on.sweep.feet[foot].band, [&](std::int64_t ix, std::int64_t iy) {
         const GroundCell cell = on.ground->cell(ix, iy);
         if (!cell.known()) return;
         tread.drift_tenth_mm = std::max<std::int64_t>(tread.drift_tenth_mm, cell.drift_tenth_mm);
@@ -66,7 +66,7 @@ TEST(TreadBounds, level_and_ends_of_a_tread_are_those_of_a_plain_reckoning) {
         on.machine.limits.drop_evidence = static_cast<std::uint8_t>(1 + rng.below(255));
         const std::int64_t rise = static_cast<std::int64_t>(rng.below(3000)) - 1500;
         for (const FootSweep& foot : on.sweep.feet) {
-            on.each_cell(foot.band.around, [&](std::int64_t ix, std::int64_t iy) {
+            on.each_cell(foot.band, [&](std::int64_t ix, std::int64_t iy) {
                 const std::size_t at = on.index(ix, iy);
                 const std::uint64_t what = rng.below(200);
                 on.map->height_tenth_mm[at] =

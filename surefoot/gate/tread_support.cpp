@@ -124,7 +124,7 @@ void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
             tread.heel_edge = std::min(tread.heel_edge, -middle.along + from_middle);
     };
     grid::for_each_overlapped_cell(
-        foot.band.around, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+        foot.band, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
             const GroundCell cell = scene.ground.cell(ix, iy);
             if (!cell.known()) return true;
             tread.drift_tenth_mm =
@@ -196,7 +196,7 @@ void check_band(const Scene& scene,
     const FootAxes axes(scene, foot);
     const std::int64_t drop = limits.drop_tenth_mm;
     grid::for_each_overlapped_cell(
-        foot.band.around, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+        foot.band, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
             const GroundCell cell = scene.ground.cell(ix, iy);
             const BandCell asked{cell, finding_at(ix, iy, foot.foot, 0, 0)};
             if (!asked.check_knowledge(limits, findings))
@@ -420,7 +420,7 @@ void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept 
     const StepLimits& step = step_limits(scene);
     const Ground& ground = scene.ground;
     for (const FootSweep& foot : scene.sweep.feet) {
-        const grid::RowRuns way(foot.corridor.around, ground.grid());
+        const grid::RowRuns way(foot.corridor, ground.grid());
         const auto join = [&](const GroundCell& cell, std::int64_t ix, std::int64_t iy) {
             if (!way.run(iy).contains(ix)) return;
             const GroundCell other = ground.cell(ix, iy);
@@ -434,7 +434,7 @@ void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept 
                 reachable.add(next.component);
         };
         grid::for_each_overlapped_cell(
-            foot.corridor.around, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+            foot.corridor, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                 const GroundCell cell = ground.cell(ix, iy);
                 for (std::int64_t i = 1; cell.knowledge == Knowledge::measured && i <= kBetween;
                      ++i) {

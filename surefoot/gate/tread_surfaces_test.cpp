@@ -106,10 +106,10 @@ TEST(TreadBounds, only_measured_ground_in_the_way_of_a_foot_is_a_step_away) {
     s.set(s.column, s.row, 0, 0);
     s.set(s.column + 1, s.row, 0, 0);
     std::set<std::size_t> way;
-    s.on.each_cell(s.on.sweep.feet[0].corridor.around,
+    s.on.each_cell(s.on.sweep.feet[0].corridor,
                    [&](std::int64_t ix, std::int64_t iy) { way.insert(s.on.index(ix, iy)); });
     std::set<std::size_t> other;
-    s.on.each_cell(s.on.sweep.feet[1].corridor.around,
+    s.on.each_cell(s.on.sweep.feet[1].corridor,
                    [&](std::int64_t ix, std::int64_t iy) { other.insert(s.on.index(ix, iy)); });
     for (std::int64_t iy = s.row - 15; iy <= s.row + 15; ++iy) {
         for (std::int64_t ix = s.column - 30; ix <= s.column + 15; ++ix) {
