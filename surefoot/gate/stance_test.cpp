@@ -142,6 +142,22 @@ TEST(Ramp, a_step_on_it_counts_from_the_ramp) {
     EXPECT_TRUE(ask(obstacle, kForward).reasons.contains(Reason::corridor_blocked));
 }
 
+TEST(Ramp, that_only_most_of_the_ground_shows_must_allow_the_step_as_level_ground_must) {
+    // Two of five rows of cells under the feet are level. So the sure slope is zero, and the floor
+    // behind lies 16 mm lower; but it lies 30 mm higher than the ramp that most rows show.
+    Terrain terrain = ramp(-0.13);
+    for (int v = 0; v < 240; ++v) {
+        for (int u = 0; u < 240 && v % 5 < 2; ++u) {
+            const double x_m = terrain.geometry.center_m({u, v}).x();
+            if (x_m > -0.13 && x_m < 0.25) terrain.height.at(u, v) = 0.0156F;
+        }
+    }
+    const Stance stance = stance_on(terrain);
+    EXPECT_EQ(stance.plane.slope_x, 0);
+    EXPECT_NEAR(stance.median_plane.tangents(250).x, kRamp, kRounded);
+    expect_refused(ask(terrain, kBackward), Reason::step_too_high);
+}
+
 TEST(Ramp, whose_slope_breaks_the_tilt_limit_is_refused) {
     Terrain terrain = ramp(-9.0, 0.125);  // 7.1 deg
     expect_refused(ask(terrain, kForward), Reason::slope);
