@@ -64,7 +64,9 @@ void add_slopes(const Ground& ground, const FootSweep& foot, AxisSlopes& slopes)
             const GroundCell cell = ground.cell(ix, iy);
             if (!cell.known()) continue;
             const auto add = [&](Slopes& along, const GroundCell& other, std::int64_t apart) {
-                if (other.known()) along.add(other.height_tenth_mm - cell.height_tenth_mm, apart);
+                // An attested height can differ from the heights measured beside it.
+                if (other.knowledge == cell.knowledge)
+                    along.add(other.height_tenth_mm - cell.height_tenth_mm, apart);
             };
             if (run.contains(ix + apart_x)) add(slopes.x, ground.cell(ix + apart_x, iy), apart_x);
             if (above.contains(ix)) add(slopes.y, ground.cell(ix, iy + apart_y), apart_y);

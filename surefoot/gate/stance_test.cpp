@@ -96,6 +96,18 @@ TEST(Stance, noise_on_level_ground_slopes_only_the_likely_plane) {
     EXPECT_GT(sloped, 40);
 }
 
+TEST(Stance, attested_ground_beside_measured_ground_of_another_height_tilts_nothing) {
+    Terrain floor = shaped([](double x, double) { return x > 0.05 ? 0.006 : std::nan(""); });
+    const auto map = floor.snapshot();
+    const Machine machine = rex();
+    Query query = make_query(kForward, 0.0, 0.0, 1.0, 0.0);
+    query.attested = {true, 0, 0, 6'000, 0};
+    const Sweep sweep = sweep_of(machine, FixedPose{}, machine.movements[kForward]);
+    const Stance stance = find_stance(Ground(*map, query, machine.limits), query, sweep, false);
+    EXPECT_EQ(stance.plane.slope_x, 0);
+    EXPECT_EQ(stance.median_plane.slope_x, 0);
+}
+
 TEST(Stance, treads_are_level_and_unknown_ground_gives_no_stance) {
     Terrain terrain = ramp(-9.0);
     const Stance level = stance_on(terrain, 0.0, true);
