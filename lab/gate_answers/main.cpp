@@ -2,13 +2,14 @@
 // What does the gate answer about maps of earlier runs, and which test refuses?
 // Usage: gate_answers ask RUN SCENE MOTION_MODEL SEED [RIG]
 //        gate_answers judge MACHINE RUN...
-// RUN    folder of `surefoot run sim:SCENE`, with map.snapshot
-// ask    writes RUN/questions.csv: every movement at poses around the last pose, with its true
-// answer judge  asks the present gate these questions, writes RUN/answers.csv and prints one line
-// per RUN.
-//        So a change of the gate or of its limits needs no new run and no new true answers.
+// RUN: folder of `surefoot run sim:SCENE`, with map.snapshot
+//
+// `ask` writes RUN/questions.csv: every movement at poses around the last pose, with its true
+// answer.
+//
+// `judge` asks the present gate these questions, writes RUN/answers.csv and prints one line per
+// RUN. So a change of the gate or of its limits needs no new run and no new true answers.
 #include <fmt/format.h>
-#include <fmt/os.h>
 
 #include <cmath>
 #include <cstring>
@@ -17,9 +18,11 @@
 #include <vector>
 
 #include "service/console/source.hpp"
+#include "service/live/ground_box.hpp"
 #include "studies/runs/offline_map.hpp"
 #include "studies/suite/suite_case.hpp"
 #include "studies/suite/suite_verdicts.hpp"
+#include "surefoot/gate/verdict_text.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/text.hpp"
 
@@ -48,24 +51,8 @@ std::string joined(const sim::SafetyAnswer& answer) {
     return text.empty() ? "-" : text;
 }
 
-std::string reasons_of(const gate::Verdict& verdict) {
-    std::string text;
-    for (int i = 0; i < gate::kReasonCount; ++i) {
-        const auto reason = static_cast<gate::Reason>(i);
-        if (verdict.reasons.contains(reason))
-            text += fmt::format("{}{}", text.empty() ? "" : "|", gate::to_string(reason));
-    }
-    return text.empty() ? "-" : text;
-}
-
-std::string unproven_of(const gate::Verdict& verdict) {
-    std::string text;
-    for (int i = 0; i < static_cast<int>(gate::Proof::count); ++i) {
-        const auto proof = static_cast<gate::Proof>(i);
-        if (verdict.evidence.lacks(proof))
-            text += fmt::format("{}{}", text.empty() ? "" : "|", gate::to_string(proof));
-    }
-    return text.empty() ? "-" : text;
+std::string joined(const std::vector<std::string_view>& names) {
+    return names.empty() ? "-" : fmt::format("{}", fmt::join(names, "|"));
 }
 
 Status write_questions(const std::string& run,
@@ -146,9 +133,8 @@ Status judge_run(const Machine& machine, const std::string& run) {
     if (!text) return text.error();
     app::VerdictCounts counts;
     std::string answers =
-        "command,x_m,y_m,safe,clear_cut,in_view,dangers,decision,primary,reasons,unproven,worst_x_"
-        "m,"
-        "worst_y_m,foot,value_tenth_mm,limit_tenth_mm\n";
+        "command,x_m,y_m,safe,clear_cut,in_view,dangers,decision,primary,reasons,unproven,"
+        "worst_x_m,worst_y_m,foot,value_tenth_mm,limit_tenth_mm\n";
     for (const std::string_view line :
          io::split(std::string_view(*text).substr(std::strlen(kHead)), "\n")) {
         const auto asked = parse(line);
@@ -159,18 +145,18 @@ Status judge_run(const Machine& machine, const std::string& run) {
         const gate::Evidence& e = verdict.evidence;
         answers += fmt::format("{},{:.3f},{:.3f},{},{},{},{},{},{},{},{},{:.3f},{:.3f},{},{},{}\n",
                                asked->query.command,
-                               1e-4 * static_cast<double>(asked->query.x_tenth_mm),
-                               1e-4 * static_cast<double>(asked->query.y_tenth_mm),
+                               app::kTenthMm_m * static_cast<double>(asked->query.x_tenth_mm),
+                               app::kTenthMm_m * static_cast<double>(asked->query.y_tenth_mm),
                                asked->safe ? 1 : 0,
                                asked->clear_cut ? 1 : 0,
                                static_cast<int>(asked->in_view),
                                asked->dangers,
                                gate::to_string(verdict.decision),
                                gate::to_string(verdict.primary),
-                               reasons_of(verdict),
-                               unproven_of(verdict),
-                               1e-4 * static_cast<double>(e.worst_x_tenth_mm),
-                               1e-4 * static_cast<double>(e.worst_y_tenth_mm),
+                               joined(gate::names_of(verdict.reasons)),
+                               joined(gate::unproven_names(verdict.evidence)),
+                               app::kTenthMm_m * static_cast<double>(e.worst_x_tenth_mm),
+                               app::kTenthMm_m * static_cast<double>(e.worst_y_tenth_mm),
                                static_cast<int>(e.foot),
                                e.value_tenth_mm,
                                e.limit_tenth_mm);
@@ -215,8 +201,8 @@ int run(const std::vector<std::string>& words) {
     const auto machine = app::load_machine(words[1]);
     if (!machine) return report(machine.error());
     fmt::print(
-        "run,unsafe,missed,borderline_missed,safe,allowed,seen,allowed_of_seen,body_seen,allowed_"
-        "of_body_seen\n");
+        "run,unsafe,missed,borderline_missed,safe,allowed,seen,allowed_of_seen,body_seen,"
+        "allowed_of_body_seen\n");
     for (std::size_t i = 2; i < words.size(); ++i) {
         const Status done = judge_run(machine->value().machine, words[i]);
         if (!done) return report(done.error());

@@ -215,21 +215,12 @@ std::string missed_line(const Question& question,
 }
 
 void count_refusal(const gate::Verdict& verdict, const std::string& variant, Tally& tally) {
-    int reasons = 0;
-    std::string name;
-    for (int i = 0; i < gate::kReasonCount; ++i) {
-        const auto reason = static_cast<gate::Reason>(i);
-        if (!verdict.reasons.contains(reason)) continue;
-        name = gate::to_string(reason);
-        tally.add(variant, "reason:" + name);
-        ++reasons;
-    }
-    if (reasons == 1) tally.add(variant, "alone:" + name);
-    for (int i = 0; i < static_cast<int>(gate::Proof::count); ++i) {
-        const auto proof = static_cast<gate::Proof>(i);
-        if (verdict.evidence.lacks(proof))
-            tally.add(variant, fmt::format("proof:{}", gate::to_string(proof)));
-    }
+    const auto reasons = gate::names_of(verdict.reasons);
+    for (const std::string_view reason : reasons)
+        tally.add(variant, fmt::format("reason:{}", reason));
+    if (reasons.size() == 1) tally.add(variant, fmt::format("alone:{}", reasons.front()));
+    for (const std::string_view proof : gate::unproven_names(verdict.evidence))
+        tally.add(variant, fmt::format("proof:{}", proof));
 }
 
 /// Counts the verdict on a safe movement in a scene with a hazard.

@@ -44,6 +44,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/gate/gate.hpp"
+#include "surefoot/gate/verdict_text.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/perception/settings.hpp"
 #include "surefoot/sim/safety_oracle/safety_oracle.hpp"
@@ -405,12 +406,8 @@ class Walk {
                const gate::Verdict& verdict,
                const gate::Query& query,
                const Pose& T_world_body) {
-        std::string reasons;
-        for (int i = 0; i < gate::kReasonCount; ++i) {
-            const auto reason = static_cast<gate::Reason>(i);
-            if (verdict.reasons.contains(reason))
-                reasons += (reasons.empty() ? "" : " ") + std::string(gate::to_string(reason));
-        }
+        const std::string reasons =
+            fmt::format("{}", fmt::join(gate::names_of(verdict.reasons), " "));
         const gate::Evidence& e = verdict.evidence;
         const double dx = 1e-4 * static_cast<double>(e.worst_x_tenth_mm - query.x_tenth_mm);
         const double dy = 1e-4 * static_cast<double>(e.worst_y_tenth_mm - query.y_tenth_mm);

@@ -49,10 +49,6 @@ struct Pool {
     }
 };
 
-double share_of(const Answers& answers) {
-    return answers.asked > 0.0 ? answers.allowed / answers.asked : std::nan("");
-}
-
 std::string percent(double part, double whole) {
     return whole > 0.0 ? fmt::format("{:.1f} %", 100.0 * part / whole) : "-";
 }
@@ -89,16 +85,11 @@ eval::ReportBars bars_of(const Pool& pool, TallyKey by, std::string title) {
 
 }  // namespace
 
-double allowed_share(std::span<const SuiteResult> results) {
+double allowed_share(std::span<const SuiteResult> results, TallyKey by) {
     Pool pool;
     for (const SuiteResult& result : results) pool.add(result);
-    return share_of(pool.safe);
-}
-
-double allowed_share_of_seen(std::span<const SuiteResult> results) {
-    Pool pool;
-    for (const SuiteResult& result : results) pool.add(result);
-    return share_of(pool.seen);
+    const Answers& answers = pool.answers_of(by);
+    return answers.asked > 0.0 ? answers.allowed / answers.asked : std::nan("");
 }
 
 std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results) {

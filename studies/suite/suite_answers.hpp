@@ -9,11 +9,9 @@
 
 namespace surefoot::app {
 
-/// Returns the share of the clear-cut safe movements that the gate allowed, over all cases. NaN =
-/// there are no such movements.
-[[nodiscard]] double allowed_share(std::span<const SuiteResult> results);
-/// As allowed_share(), for movements whose zone both cameras saw on the way (sim::SeenGround).
-[[nodiscard]] double allowed_share_of_seen(std::span<const SuiteResult> results);
+/// Returns the share of the clear-cut safe movements that the gate allowed, over all cases.
+/// `by`: as for refusal_table(). NaN = there are no such movements.
+[[nodiscard]] double allowed_share(std::span<const SuiteResult> results, TallyKey by);
 
 /// Returns four bar charts for every noise level: the reasons for refusing clear-cut safe
 /// movements, all and those in view, the proofs that failed for them, and the missed hazards.

@@ -74,10 +74,10 @@ TEST(SuiteAnswers, SharesArePooledOverTheQuestionsNotOverTheCases) {
     std::vector<SuiteResult> results = {case_of("floor", 1.0, 300.0, 0.5),
                                         case_of("floor", 1.0, 100.0, 0.1),
                                         case_of("hole", 1.0, 0.0, std::nan(""))};
-    EXPECT_DOUBLE_EQ(allowed_share(results), 0.4);
-    EXPECT_TRUE(std::isnan(allowed_share({results.data() + 2, 1})));
-    EXPECT_DOUBLE_EQ(allowed_share_of_seen(results), 0.75);
-    EXPECT_TRUE(std::isnan(allowed_share_of_seen({results.data() + 2, 1})));
+    EXPECT_DOUBLE_EQ(allowed_share(results, TallyKey::reason), 0.4);
+    EXPECT_TRUE(std::isnan(allowed_share({results.data() + 2, 1}, TallyKey::reason)));
+    EXPECT_DOUBLE_EQ(allowed_share(results, TallyKey::seen), 0.75);
+    EXPECT_TRUE(std::isnan(allowed_share({results.data() + 2, 1}, TallyKey::seen)));
 
     results[0].tallies.add({TallyKey::reason, "NOT_RESOLVABLE", 100, 60});
     results[1].tallies.add({TallyKey::reason, "NOT_RESOLVABLE", 60, 20});

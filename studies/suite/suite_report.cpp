@@ -84,7 +84,7 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
              "the margin of the oracle",
              sum_of(results, "questions"),
              sum_of(results, "borderline_missed"))});
-    const double allowed = allowed_share(results);
+    const double allowed = allowed_share(results, TallyKey::reason);
     for (const NoiseBins& level : pooled_by_noise(results)) {
         std::vector<SuiteResult> of_level;
         std::copy_if(results.begin(),
@@ -93,13 +93,13 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
                      [&](const SuiteResult& r) { return r.which.noise == level.noise; });
         content.figures.push_back(
             {fmt::format("Clearly safe movements allowed, noise {}", times(level.noise)),
-             shown(FigureKind::share, allowed_share(of_level)),
+             shown(FigureKind::share, allowed_share(of_level, TallyKey::reason)),
              "",
              fmt::format("of {:.0f} movements; the reasons of the refusals are listed below",
                          sum_of(of_level, "safe_questions"))});
         content.figures.push_back(
             {fmt::format("Clearly safe and seen movements allowed, noise {}", times(level.noise)),
-             shown(FigureKind::share, allowed_share_of_seen(of_level)),
+             shown(FigureKind::share, allowed_share(of_level, TallyKey::seen)),
              "",
              fmt::format("of {:.0f} movements whose feet, ways and drop bands both cameras saw",
                          sum_of(of_level, "seen_questions"))});

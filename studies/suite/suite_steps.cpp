@@ -9,6 +9,7 @@
 #include "service/live/ground_box.hpp"
 #include "studies/runs/offline_map.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/gate/verdict_text.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 #include "surefoot/sim/safety_oracle/seen_ground.hpp"
@@ -44,21 +45,8 @@ bool inside(const gate::AttestedArea& area, const gate::Query& query) {
     return std::hypot(dx, dy) <= area.radius_tenth_mm;
 }
 
-std::string joined(const sim::SafetyAnswer& answer) {
-    std::string text;
-    for (const sim::Finding& finding : answer.dangers)
-        text += fmt::format("{}{}", text.empty() ? "" : "|", sim::to_string(finding.danger));
-    return text;
-}
-
-std::string joined(const gate::ReasonSet& reasons) {
-    std::string text;
-    for (int i = 0; i < gate::kReasonCount; ++i) {
-        const auto reason = static_cast<gate::Reason>(i);
-        if (reasons.contains(reason))
-            text += fmt::format("{}{}", text.empty() ? "" : "|", gate::to_string(reason));
-    }
-    return text;
+std::string joined(const std::vector<std::string_view>& names) {
+    return fmt::format("{}", fmt::join(names, "|"));
 }
 
 }  // namespace
@@ -125,9 +113,9 @@ void StepQuestions::ask(const grid::MapSnapshot& map) {
                       answer.safe,
                       answer.clear_cut,
                       seen,
-                      joined(answer),
+                      joined(names_of(answer)),
                       gate::to_string(verdict.decision),
-                      joined(verdict.reasons)});
+                      joined(gate::names_of(verdict.reasons))});
 }
 
 }  // namespace surefoot::app

@@ -12,6 +12,7 @@
 
 #include "service/live/ground_box.hpp"
 #include "studies/runs/offline_map.hpp"
+#include "surefoot/gate/verdict_text.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/sim/safety_oracle/seen_ground.hpp"
 
@@ -26,18 +27,13 @@ struct Stance {
     double yaw_odom_rad = 0.0;
 };
 
-double yaw_of(const Pose& pose) {
-    const Eigen::Vector3d ahead = pose.rotation * Eigen::Vector3d::UnitX();
-    return std::atan2(ahead.y(), ahead.x());
-}
-
 std::vector<Stance> stances_around(const Pose& T_world_body,
                                    const grid::MapSnapshot& map,
                                    double reach_m) {
     constexpr double kGrid_m = 0.2;
     const gate::Query here = gate::query_at_body(0, map);
     const double yaw_odom_rad = std::atan2(here.sin_yaw, here.cos_yaw);
-    const double turn_rad = yaw_of(T_world_body) - yaw_odom_rad;
+    const double turn_rad = yaw_rad(T_world_body) - yaw_odom_rad;
     const int steps = grid::whole_cells(reach_m / kGrid_m);
     std::vector<Stance> stances;
     for (int i = -steps; i <= steps; ++i) {
@@ -72,13 +68,6 @@ gate::Query query_of(const Machine& machine,
     return query;
 }
 
-std::vector<std::string_view> names_of(const sim::SafetyAnswer& answer) {
-    std::vector<std::string_view> names;
-    for (const sim::Finding& finding : answer.dangers)
-        names.emplace_back(sim::to_string(finding.danger));
-    return names;
-}
-
 std::string missed_sentence(const GateQuestion& question) {
     const Eigen::Vector3d& at = question.T_world_body.translation_m;
     const Eigen::Vector3d& where = question.truth.dangers.front().where_m;
@@ -88,7 +77,7 @@ std::string missed_sentence(const GateQuestion& question) {
         question.query.command,
         at.x(),
         at.y(),
-        yaw_of(question.T_world_body),
+        yaw_rad(question.T_world_body),
         question.truth.sentence(),
         where.x(),
         where.y(),
@@ -96,6 +85,13 @@ std::string missed_sentence(const GateQuestion& question) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> names_of(const sim::SafetyAnswer& answer) {
+    std::vector<std::string_view> names;
+    for (const sim::Finding& finding : answer.dangers)
+        names.emplace_back(sim::to_string(finding.danger));
+    return names;
+}
 
 void VerdictCounts::add(bool truly_safe, bool clear_cut, InView in_view, bool allowed) {
     if (!clear_cut) {
@@ -127,19 +123,10 @@ void VerdictTallies::add(const VerdictTally& tally) {
 }
 
 void VerdictTallies::add_refusal(const gate::Verdict& verdict, bool seen) {
-    std::vector<std::string_view> words;
-    for (int i = 0; i < gate::kReasonCount; ++i) {
-        const auto reason = static_cast<gate::Reason>(i);
-        if (verdict.reasons.contains(reason)) words.emplace_back(gate::to_string(reason));
-    }
-    add(TallyKey::reason, words);
-    if (seen) add(TallyKey::seen, words);
-    words.clear();
-    for (int i = 0; i < static_cast<int>(gate::Proof::count); ++i) {
-        const auto proof = static_cast<gate::Proof>(i);
-        if (verdict.evidence.lacks(proof)) words.emplace_back(gate::to_string(proof));
-    }
-    add(TallyKey::proof, words);
+    const std::vector<std::string_view> reasons = gate::names_of(verdict.reasons);
+    add(TallyKey::reason, reasons);
+    if (seen) add(TallyKey::seen, reasons);
+    add(TallyKey::proof, gate::unproven_names(verdict.evidence));
 }
 
 VerdictTally& VerdictTallies::of(TallyKey by, std::string_view name) {

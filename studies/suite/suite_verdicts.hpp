@@ -77,6 +77,9 @@ class VerdictTallies {
     std::vector<VerdictTally> all_;
 };
 
+/// Returns the names of the dangers, most important first.
+[[nodiscard]] std::vector<std::string_view> names_of(const sim::SafetyAnswer& answer);
+
 /// A question to the gate, and its true answer.
 struct GateQuestion {
     gate::Query query;              ///< with an attestation for the ground under the standing feet

@@ -69,7 +69,7 @@ std::uint32_t edges_left(const grid::FixedConvex& here, const Corners& there) no
     std::uint32_t edges = 0;
     for (int i = 0; i < here.count; ++i) {
         const auto& [a, b] = edge_of(here, i);
-        const std::int64_t size = std::max(b.x - a.x, a.x - b.x) + std::max(b.y - a.y, a.y - b.y);
+        const std::int64_t size = grid::magnitude(b.x - a.x) + grid::magnitude(b.y - a.y);
         for (const grid::FixedPoint& corner : there) {
             if (grid::cross(a, b, corner) < -kRounding * size)
                 edges |= std::uint32_t{1} << static_cast<unsigned>(i);
@@ -94,15 +94,15 @@ FootSweep foot_sweep(Foot foot,
                      const GateLimits& limits,
                      const FixedPose& start,
                      const FixedPose& target,
-                     std::int64_t drift_margin) noexcept {
+                     std::int64_t margin) noexcept {
     FootSweep sweep;
     sweep.foot = foot;
     sweep.stance = grid::convex_hull(corners_of(box, start, 0));
     sweep.landing = grid::convex_hull(corners_of(box, target, 0));
     sweep.landing_center = to_odom(target, box.center_x_tenth_mm, box.center_y_tenth_mm);
-    const std::int64_t corridor = limits.foot_margin_tenth_mm + drift_margin;
+    const std::int64_t corridor = limits.foot_margin_tenth_mm + margin;
     sweep.corridor = swept(box, start, target, corridor + kBesideTenthMm);
-    const std::int64_t band = limits.drop_band_tenth_mm + drift_margin;
+    const std::int64_t band = limits.drop_band_tenth_mm + margin;
     sweep.band = grid::convex_hull(corners_of(box, target, band + kBesideTenthMm));
     sweep.edges = grid::convex_hull(corners_of(box, target, band + kSmearTenthMm));
     return sweep;

@@ -11,6 +11,7 @@
 #include "surefoot/core/machine.hpp"
 #include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate.hpp"
+#include "surefoot/gate/verdict_text.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
 
 /// Shared by the tests of the gate: the REX, test terrain and a function that asks the gate.
@@ -185,10 +186,8 @@ inline Verdict ask(Terrain& terrain, std::uint8_t command) {
 /// All reasons as text, for failure messages.
 inline std::string words(const Verdict& verdict) {
     std::string text = std::string(to_string(verdict.decision)) + ":";
-    for (int i = 0; i < kReasonCount; ++i) {
-        if (verdict.reasons.contains(static_cast<Reason>(i)))
-            text += std::string(" ") + to_string(static_cast<Reason>(i));
-    }
+    for (const std::string_view reason : names_of(verdict.reasons))
+        text += " " + std::string(reason);
     return text;
 }
 

@@ -6,14 +6,6 @@
 #include "surefoot/gate/tilt.hpp"
 
 namespace surefoot::gate {
-namespace {
-
-constexpr std::int64_t magnitude(std::int64_t x) noexcept {
-    return x < 0 ? -x : x;
-}
-
-}  // namespace
-
 Ground::Ground(const grid::MapSnapshot& map, const Query& query, const GateLimits& limits) noexcept
     : map_(map),
       grid_{map.origin_x_tenth_mm, map.origin_y_tenth_mm, map.resolution_tenth_mm},
@@ -24,8 +16,8 @@ Ground::Ground(const grid::MapSnapshot& map, const Query& query, const GateLimit
     const std::int64_t dx = query.x_tenth_mm - attested_.center_x_tenth_mm;
     const std::int64_t dy = query.y_tenth_mm - attested_.center_y_tenth_mm;
     const std::int64_t radius = attested_.radius_tenth_mm;
-    attestation_ = attested_.active && magnitude(dx) <= radius && magnitude(dy) <= radius &&
-                   dx * dx + dy * dy <= radius * radius;
+    attestation_ = attested_.active && grid::magnitude(dx) <= radius &&
+                   grid::magnitude(dy) <= radius && dx * dx + dy * dy <= radius * radius;
 }
 
 std::span<const grid::SnapshotEdge> Ground::edges() const noexcept {
@@ -70,8 +62,8 @@ bool Ground::is_proven_lower(std::size_t at) const noexcept {
 bool Ground::is_attested(std::int64_t ix, std::int64_t iy) const noexcept {
     const std::int64_t x = grid_.origin_x + ix * grid_.side - attested_.center_x_tenth_mm;
     const std::int64_t y = grid_.origin_y + iy * grid_.side - attested_.center_y_tenth_mm;
-    const std::int64_t far_x = std::max(magnitude(x), magnitude(x + grid_.side));
-    const std::int64_t far_y = std::max(magnitude(y), magnitude(y + grid_.side));
+    const std::int64_t far_x = std::max(grid::magnitude(x), grid::magnitude(x + grid_.side));
+    const std::int64_t far_y = std::max(grid::magnitude(y), grid::magnitude(y + grid_.side));
     const std::int64_t radius = attested_.radius_tenth_mm;
     return far_x * far_x + far_y * far_y <= radius * radius;
 }
@@ -132,7 +124,7 @@ void ReachableSurfaces::add_beside_attested(const Ground& ground,
             const std::int64_t distance_sq =
                 from_center.x * from_center.x + from_center.y * from_center.y;
             if (cell.known() && distance_sq <= 4 * reach * reach &&
-                magnitude(cell.height_tenth_mm - area.height_tenth_mm) <= step_tenth_mm)
+                grid::magnitude(cell.height_tenth_mm - area.height_tenth_mm) <= step_tenth_mm)
                 add(cell.component);
         }
     }

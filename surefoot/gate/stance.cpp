@@ -3,15 +3,8 @@
 
 #include <algorithm>
 
-#include "surefoot/core/checked_index.hpp"
-
 namespace surefoot::gate {
 namespace {
-
-/// Returns a / b, rounded to the nearest integer; b > 0.
-std::int64_t rounded_ratio(std::int64_t a, std::int64_t b) noexcept {
-    return grid::floor_div(2 * a + b, 2 * b);
-}
 
 /// Slopes between cells along one axis. With more pairs than fit, the first ones count.
 class Slopes {
@@ -22,7 +15,7 @@ class Slopes {
             rise_tenth_mm * (std::int64_t{1} << StancePlane::kFractionBits) / (2 * cells);
     }
     /// True if there are enough pairs for a slope.
-    [[nodiscard]] bool any() const noexcept { return count_ >= 8; }
+    [[nodiscard]] bool any() const noexcept { return count_ >= kFewest; }
     [[nodiscard]] std::int64_t median() noexcept { return any() ? at_rank(count_ / 2) : 0; }
     /// Returns the slope that three quarters of the pairs reach or exceed. Returns zero if there is
     /// no such slope.
@@ -40,6 +33,8 @@ class Slopes {
         std::nth_element(begin, nth, begin + static_cast<std::ptrdiff_t>(count_));
         return *nth;
     }
+
+    static constexpr std::size_t kFewest = 8;
 
     std::array<std::int64_t, 1024> slopes_{};
     std::size_t count_ = 0;
@@ -120,8 +115,9 @@ Stance find_stance(const Ground& ground,
     stance.known = given || both.count > 0;
     if (!stance.known) return stance;
     if (both.count > 0) {
-        plane.middle = {rounded_ratio(both.x, both.count), rounded_ratio(both.y, both.count)};
-        plane.height_tenth_mm = rounded_ratio(both.z, both.count);
+        plane.middle = {grid::rounded_div(both.x, both.count),
+                        grid::rounded_div(both.y, both.count)};
+        plane.height_tenth_mm = grid::rounded_div(both.z, both.count);
     }
     if (given) plane.height_tenth_mm = query.stance_height_tenth_mm;
     if (!level) {
@@ -138,7 +134,7 @@ Stance find_stance(const Ground& ground,
     for (std::size_t i = 0; i < sweep.feet.size(); ++i) {
         Sums own;
         add_cells(ground, sweep.feet[i], plane, own);
-        if (own.count > 0) stance.feet_tenth_mm[i] = rounded_ratio(own.z, own.count);
+        if (own.count > 0) stance.feet_tenth_mm[i] = grid::rounded_div(own.z, own.count);
     }
     return stance;
 }

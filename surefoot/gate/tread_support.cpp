@@ -11,10 +11,6 @@ namespace {
 
 using grid::FixedPoint;
 
-constexpr std::int64_t magnitude(std::int64_t x) noexcept {
-    return x < 0 ? -x : x;
-}
-
 /// Returns factor * x, rounded up and never less than x.
 std::int64_t times_up(double factor, std::int64_t x) noexcept {
     // in range: x has 32 bits; sigma_factor is at most 10 (Machine::problem())
@@ -43,9 +39,10 @@ class FootAxes {
           pose_(scene.sweep.target),
           middle_(foot.landing_center),
           // A cell reaches half its side times (|cos| + |sin|) on each side of its centre.
-          reach_(1 - grid::floor_div(-(magnitude(pose_.cos_yaw) + magnitude(pose_.sin_yaw)) *
-                                         scene.ground.grid().side,
-                                     FixedPose::kOne)),
+          reach_(1 - grid::floor_div(
+                         -(grid::magnitude(pose_.cos_yaw) + grid::magnitude(pose_.sin_yaw)) *
+                             scene.ground.grid().side,
+                         FixedPose::kOne)),
           length_(box_of(scene, foot).length_tenth_mm),
           width_(box_of(scene, foot).width_tenth_mm),
           ankle_(2 * scene.machine.ankle_from_heel_tenth_mm - length_),
@@ -68,12 +65,13 @@ class FootAxes {
     [[nodiscard]] std::int64_t ankle_reach() const noexcept { return ankle_reach_; }
     /// True if any part of a cell lies under the ankle or touches it.
     [[nodiscard]] bool touches_ankle(const Place& middle) const noexcept {
-        return magnitude(middle.along - ankle_) < ankle_reach_ + reach_;
+        return grid::magnitude(middle.along - ankle_) < ankle_reach_ + reach_;
     }
     /// Returns the distance of the nearest part of a cell from the foot, doubled. Negative = under
     /// the foot.
     [[nodiscard]] std::int64_t gap(const Place& middle) const noexcept {
-        return std::max(magnitude(middle.along) - length_, magnitude(middle.across) - width_) -
+        return std::max(grid::magnitude(middle.along) - length_,
+                        grid::magnitude(middle.across) - width_) -
                reach_;
     }
 
@@ -99,7 +97,7 @@ void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
     std::int64_t count = 0;
     const bool all_known = grid::for_each_overlapped_cell(
         foot.landing, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
-            if (magnitude(axes.middle_of(ix, iy).along - axes.ankle()) > axes.ankle_reach())
+            if (grid::magnitude(axes.middle_of(ix, iy).along - axes.ankle()) > axes.ankle_reach())
                 return true;
             const GroundCell cell = scene.ground.cell(ix, iy);
             sum += cell.height_tenth_mm - scene.stance.plane.height_tenth_mm;
@@ -107,7 +105,7 @@ void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
             return cell.known();
         });
     tread.known = all_known && count > 0;
-    if (tread.known) tread.rise_tenth_mm = grid::floor_div(2 * sum + count, 2 * count);
+    if (tread.known) tread.rise_tenth_mm = grid::rounded_div(sum, count);
 }
 
 /// Finds, towards the toe and towards the heel, the start of the first ground that lies more than
@@ -267,7 +265,7 @@ std::optional<std::int64_t> nosing_line(const Scene& scene,
     for (const grid::SnapshotEdge& edge : scene.ground.edges()) {
         const std::int64_t above =
             edge.upper_tenth_mm - scene.stance.plane.height_tenth_mm - tread.rise_tenth_mm;
-        if (!is_sound(edge) || magnitude(above) > limits.patch_residual_tenth_mm ||
+        if (!is_sound(edge) || grid::magnitude(above) > limits.patch_residual_tenth_mm ||
             edge.upper_tenth_mm - std::int64_t{edge.lower_tenth_mm} <= limits.drop_tenth_mm)
             continue;
         const auto end = [&](std::int32_t x, std::int32_t y) {
@@ -376,7 +374,7 @@ void check_body_lowered(const Scene& scene, const Treads& treads, Findings& find
 void check_tread_bands(const Scene& scene, const Treads& treads, Findings& findings) noexcept {
     for (std::size_t i = 0; i < treads.size(); ++i)
         check_band(scene, scene.sweep.feet[i], treads[i], findings);
-    const std::int64_t between = magnitude(treads[0].rise_tenth_mm - treads[1].rise_tenth_mm);
+    const std::int64_t between = grid::magnitude(treads[0].rise_tenth_mm - treads[1].rise_tenth_mm);
     if (between > scene.machine.limits.patch_residual_tenth_mm) findings.deny(Reason::roughness);
 }
 

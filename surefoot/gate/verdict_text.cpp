@@ -144,4 +144,22 @@ std::string text_of(const Verdict& verdict, const Query& query, const Machine& m
     return error_text(verdict.primary);
 }
 
+std::vector<std::string_view> names_of(ReasonSet reasons) {
+    std::vector<std::string_view> names;
+    for (int i = 0; i < kReasonCount; ++i) {
+        const auto reason = static_cast<Reason>(i);
+        if (reasons.contains(reason)) names.emplace_back(to_string(reason));
+    }
+    return names;
+}
+
+std::vector<std::string_view> unproven_names(const Evidence& evidence) {
+    std::vector<std::string_view> names;
+    for (int i = 0; i < static_cast<int>(Proof::count); ++i) {
+        const auto proof = static_cast<Proof>(i);
+        if (evidence.lacks(proof)) names.emplace_back(to_string(proof));
+    }
+    return names;
+}
+
 }  // namespace surefoot::gate

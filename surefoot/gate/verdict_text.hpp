@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "surefoot/gate/gate.hpp"
 
@@ -12,5 +14,10 @@ namespace surefoot::gate {
 [[nodiscard]] std::string text_of(const Verdict& verdict,
                                   const Query& query,
                                   const Machine& machine);
+
+/// Returns the names of the reasons, in order of precedence.
+[[nodiscard]] std::vector<std::string_view> names_of(ReasonSet reasons);
+/// Returns the names of the proofs that do not hold.
+[[nodiscard]] std::vector<std::string_view> unproven_names(const Evidence& evidence);
 
 }  // namespace surefoot::gate

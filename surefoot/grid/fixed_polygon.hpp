@@ -46,6 +46,15 @@ struct FixedConvex {
     return quotient - (a % b < 0 ? 1 : 0);
 }
 
+/// a / b, rounded to the nearest integer; halves upward. b > 0.
+[[nodiscard]] constexpr std::int64_t rounded_div(std::int64_t a, std::int64_t b) noexcept {
+    return floor_div(2 * a + b, 2 * b);
+}
+
+[[nodiscard]] constexpr std::int64_t magnitude(std::int64_t x) noexcept {
+    return x < 0 ? -x : x;
+}
+
 /// Convex hull of at most 8 points (Andrew's monotone chain, 1979). Drops points on an edge.
 [[nodiscard]] inline FixedConvex convex_hull(std::span<const FixedPoint> points) noexcept {
     std::array<FixedPoint, FixedConvex::kMaxVertices> sorted{};

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "surefoot/core/angles.hpp"
+#include "surefoot/gate/verdict_text.hpp"
 
 namespace surefoot::gate_process {
 namespace {
@@ -34,15 +35,6 @@ std::string hexadecimal(std::uint64_t value) {
     return text;
 }
 
-Json unproven_array(const gate::Evidence& evidence) {
-    Json names = Json::array();
-    for (int i = 0; i < static_cast<int>(gate::Proof::count); ++i) {
-        const auto proof = static_cast<gate::Proof>(i);
-        if (evidence.lacks(proof)) names.push_back(to_string(proof));
-    }
-    return names;
-}
-
 }  // namespace
 
 int result_code(const gate::Verdict& verdict) noexcept {
@@ -57,12 +49,7 @@ const char* verdict_name(const gate::Verdict& verdict) noexcept {
 }
 
 Json reasons_array(gate::ReasonSet reasons) {
-    Json names = Json::array();
-    for (int i = 0; i < gate::kReasonCount; ++i) {
-        const auto reason = static_cast<gate::Reason>(i);
-        if (reasons.contains(reason)) names.push_back(to_string(reason));
-    }
-    return names;
+    return gate::names_of(reasons);
 }
 
 Json evidence_object(const gate::Verdict& verdict) {
@@ -87,7 +74,7 @@ Json evidence_object(const gate::Verdict& verdict) {
             {"cells", e.cells},
             {"known_cells", e.known_cells},
             {"attested_cells", e.attested_cells},
-            {"unproven", unproven_array(e)}};
+            {"unproven", gate::unproven_names(e)}};
 }
 
 Json verdict_object(const gate::Verdict& verdict, const std::string& text) {

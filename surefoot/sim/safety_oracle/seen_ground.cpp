@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/sim/motion/planar.hpp"
@@ -35,16 +36,18 @@ double reach_of(const Machine& machine) {
     return reach_m;
 }
 
-SceneTruth until(const SceneTruth& truth, std::int64_t until_ns) {
-    SceneTruth so_far = truth;
-    std::erase_if(so_far.trajectory,
-                  [&](const StampedPose& pose) { return pose.time_ns > until_ns; });
-    return so_far;
-}
-
-PlanarPose planar(const Pose& T_world_body) {
+/// A movement from a pose.
+struct Way {
+    rules::Figures figures;
+    PlanarPose T_world_start;
+};
+/// Returns an empty optional for an unusable command.
+std::optional<Way> way_of(const Machine& machine, const Pose& T_world_body, int command) {
+    const Movement* movement = rules::movement_of(machine, command);
+    if (movement == nullptr) return std::nullopt;
     const Eigen::Vector3d& at_m = T_world_body.translation_m;
-    return PlanarPose::of(at_m.x(), at_m.y(), yaw_rad(T_world_body));
+    return Way{rules::figures_of(machine, *movement),
+               PlanarPose::of(at_m.x(), at_m.y(), yaw_rad(T_world_body))};
 }
 
 /// Calls test(ix, iy) for all cells whose centre `area` covers, until one fails. Returns true if
@@ -74,7 +77,7 @@ SeenGround::SeenGround(const SceneTruth& truth,
                        double radius_m,
                        Executor& executor)
     : lattice_(lattice_around(center_m, radius_m + reach_of(machine))),
-      seen_(visibility_mask(until(truth, until_ns), lattice_, {}, executor)) {}
+      seen_(visibility_mask(truth, lattice_, {.until_ns = until_ns}, executor)) {}
 
 bool SeenGround::is_known(int ix, int iy, const VouchedGround& vouched) const {
     return (lattice_.center_m(ix, iy) - vouched.center_m).norm() <= vouched.radius_m ||
@@ -85,17 +88,17 @@ bool SeenGround::holds_zone(const Machine& machine,
                             const Pose& T_world_body,
                             int command,
                             const VouchedGround& vouched) const {
-    const Movement* movement = rules::movement_of(machine, command);
-    if (movement == nullptr) return false;
-    const rules::Figures figures = rules::figures_of(machine, *movement);
-    const PlanarPose T_world_start = planar(T_world_body);
+    const auto way = way_of(machine, T_world_body, command);
+    if (!way) return false;
+    const rules::Figures& figures = way->figures;
+    const PlanarPose& T_world_start = way->T_world_start;
     const auto known = [&](int ix, int iy) { return is_known(ix, iy, vouched); };
     return std::all_of(figures.feet.begin(), figures.feet.end(), [&](const Rect& foot) {
-        const SweptBox way(
+        const SweptBox corridor(
             grown(foot, figures.foot_margin_m), T_world_start, figures.T_start_target);
         const SweptBox band(
             grown(foot, figures.band_m), T_world_start * figures.T_start_target, {});
-        return all_in(way, lattice_, known) && all_in(band, lattice_, known);
+        return all_in(corridor, lattice_, known) && all_in(band, lattice_, known);
     });
 }
 
@@ -103,10 +106,10 @@ bool SeenGround::holds_body(const Machine& machine,
                             const Pose& T_world_body,
                             int command,
                             const VouchedGround& vouched) const {
-    const Movement* movement = rules::movement_of(machine, command);
-    if (movement == nullptr) return false;
-    const rules::Figures figures = rules::figures_of(machine, *movement);
-    const PlanarPose T_world_start = planar(T_world_body);
+    const auto way = way_of(machine, T_world_body, command);
+    if (!way) return false;
+    const rules::Figures& figures = way->figures;
+    const PlanarPose& T_world_start = way->T_world_start;
     return std::all_of(figures.body.begin(), figures.body.end(), [&](const auto& part) {
         const Rect box = grown(part.box, figures.sway_m);
         const SweptBox here(box, T_world_start, {});

@@ -46,9 +46,11 @@ struct CameraPair {
     EyePoint right;
 };
 
-std::vector<CameraPair> cameras_along(const SceneTruth& truth, int stride) {
+std::vector<CameraPair> cameras_along(const SceneTruth& truth, const VisibilityConfig& config) {
+    const auto stride = static_cast<std::size_t>(std::max(config.frame_stride, 1));
     std::vector<CameraPair> pairs;
-    for (std::size_t i = 0; i < truth.trajectory.size(); i += static_cast<std::size_t>(stride)) {
+    for (std::size_t i = 0; i < truth.trajectory.size(); i += stride) {
+        if (truth.trajectory[i].time_ns > config.until_ns) break;
         const Pose T_world_left = truth.trajectory[i].T_world_body * truth.rig.body_from_left();
         pairs.push_back({make_camera(truth.rig.left, T_world_left),
                          make_camera(truth.rig.right ? *truth.rig.right : truth.rig.left,
@@ -168,7 +170,7 @@ Image<std::uint8_t> visibility_mask(const SceneTruth& truth,
                                     const VisibilityConfig& config,
                                     Executor& executor) {
     Image<std::uint8_t> mask(lattice.nx, lattice.ny);
-    const auto pairs = cameras_along(truth, std::max(config.frame_stride, 1));
+    const auto pairs = cameras_along(truth, config);
     executor.parallel_for(lattice.ny, [&](int iy) {
         for (int ix = 0; ix < lattice.nx; ++ix) {
             const Eigen::Vector2d center_m = lattice.center_m(ix, iy);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "surefoot/camera/stereo_rig.hpp"
@@ -77,6 +78,7 @@ struct VisibilityConfig {
     int min_frames = 1;      ///< smallest number of frames that must see a cell
     double margin_px = 0.0;  ///< width of the ignored image border
     int frame_stride = 1;    ///< use every n-th pose only
+    std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  ///< ignores later poses
 };
 
 /// Returns 1 if both cameras see the highest surface at the cell's centre at once in at least
