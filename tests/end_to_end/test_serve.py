@@ -98,11 +98,13 @@ class GateProcess(CliTest):
 
 class Walk(CliTest):
     def test_a_table_stops_the_walk_seen_and_remembered(self):
-        """Fig. 9.16 of the reference thesis (Lange 2016): up to a table, back, half a turn, back to the table out of view."""
+        """Fig. 9.16 of the reference thesis (Lange 2016): up to a table, back, half a turn, back to the table out of view.
+
+        With the full noise the gate also refuses some steps on the floor, because of the slope under the feet."""
         log = self.dir / "audit"
         told = self.json_of("serve", "sim:tests/end_to_end/table_ahead.yaml", "--seed", 1, "--attest", 1, "--walk",
                             "9*6,17*2,25*12,17*5", "--port", 0, "--once", "--set", "sim.sensor=analytic",
-                            "--audit", log, *FAIR_SHARE, cwd=ROOT)["movements"]
+                            "--set", "sim.noise=0.5", "--audit", log, *FAIR_SHARE, cwd=ROOT)["movements"]
         self.assertEqual([m["command"] for m in told], [FORWARD] * 6 + [BACKWARD] * 2 + [TURN_LEFT] * 12 + [BACKWARD] * 5)
         ahead = [m for m in told if m["command"] == FORWARD]
         self.assertTrue(all(m["moved"] for m in ahead[:4]), ahead)
@@ -197,9 +199,9 @@ class Faults(CliTest):
             self.service.send_signal(signal.SIGCONT)
             self.wait_for("OK")
 
-    def wait_for_words(self, words, seconds):
+    def wait_for_words(self, words):
         """Waits for words of the service or its gate on stderr."""
-        patience = time.monotonic() + seconds
+        patience = time.monotonic() + PATIENCE_S
         while words not in (said := (self.dir / "stderr").read_text()):
             self.assertLess(time.monotonic(), patience, said)
             time.sleep(0.02)
@@ -240,9 +242,9 @@ class Faults(CliTest):
             self.wait_for("OK")
             (self.dir / "stderr").write_text("")
             lose()
-            self.wait_for_words(words, 5.0)  # 0.25 s on a machine that is not busy
-            self.wait_for_words("serve repaired it", 5.0)
-            self.wait_for_words("open again", 5.0)
+            self.wait_for_words(words)
+            self.wait_for_words("serve repaired it")
+            self.wait_for_words("open again")
             self.wait_for("OK")
         self.assertIsNone(self.service.poll())
 
@@ -259,7 +261,7 @@ class Faults(CliTest):
                     file.seek(-1, os.SEEK_CUR)
                     file.write(bytes([byte[0] ^ 1]))
             time.sleep(0.01)
-        self.wait_for_words("another process has changed a map", 5.0)
+        self.wait_for_words("another process has changed a map")
         for _ in range(50):  # the error is latched
             self.assertEqual(self.client.step(FORWARD)["verdict"], "ERROR")
             time.sleep(0.02)
