@@ -98,6 +98,7 @@ FootSweep foot_sweep(Foot foot,
     FootSweep sweep;
     sweep.foot = foot;
     sweep.stance = grid::convex_hull(corners_of(box, start, 0));
+    sweep.around = grid::convex_hull(corners_of(box, start, limits.drop_band_tenth_mm));
     sweep.landing = grid::convex_hull(corners_of(box, target, 0));
     sweep.landing_center = to_odom(target, box.center_x_tenth_mm, box.center_y_tenth_mm);
     const std::int64_t corridor = limits.foot_margin_tenth_mm + margin;
@@ -163,7 +164,7 @@ Extent extent_of(const Sweep& sweep) noexcept {
         for (const grid::FixedPoint& p : polygon.points()) extent.include(p);
     };
     for (const FootSweep& foot : sweep.feet) {
-        include(foot.stance);
+        include(foot.around);
         include(foot.corridor);
         include(foot.edges);
     }

@@ -46,6 +46,7 @@ struct FixedPose {
 struct FootSweep {
     Foot foot = Foot::none;
     grid::FixedConvex stance;   ///< sole area at the start
+    grid::FixedConvex around;   ///< sole area at the start, widened by `drop_band`
     grid::FixedConvex landing;  ///< sole area at the target
     grid::FixedPoint landing_center;
     grid::FixedConvex corridor;  ///< hull of stance and landing, widened by `foot_margin`
@@ -89,7 +90,8 @@ struct Extent {
 /// mm.
 [[nodiscard]] std::int64_t drift_margin(const GateLimits& limits,
                                         std::int64_t drift_tenth_mm) noexcept;
-/// Returns all regions. `margin_tenth_mm` widens all except the stance and landing areas.
+/// Returns all regions. `margin_tenth_mm` widens all except `stance`, `around` and
+/// `landing`.
 [[nodiscard]] Sweep sweep_of(const Machine& machine,
                              const FixedPose& start,
                              const Movement& movement,

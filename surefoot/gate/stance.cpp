@@ -45,9 +45,11 @@ struct AxisSlopes {
     Slopes y;
 };
 
-/// Adds the slopes between the known cells under one foot.
-void add_slopes(const Ground& ground, const FootSweep& foot, AxisSlopes& slopes) noexcept {
-    const grid::RowRuns area(foot.stance, ground.grid());
+/// Adds the slopes between the known cells of a polygon.
+void add_slopes(const Ground& ground,
+                const grid::FixedConvex& polygon,
+                AxisSlopes& slopes) noexcept {
+    const grid::RowRuns area(polygon, ground.grid());
     const grid::FixedRun rows = area.rows();
     const grid::FixedRun columns = area.columns();
     const std::int64_t apart_x = std::max<std::int64_t>(1, (columns.last - columns.first + 1) / 2);
@@ -120,16 +122,18 @@ Stance find_stance(const Ground& ground,
         plane.height_tenth_mm = grid::rounded_div(both.z, both.count);
     }
     if (given) plane.height_tenth_mm = query.stance_height_tenth_mm;
+    stance.median_plane = plane;
     if (!level) {
-        AxisSlopes slopes;
-        for (const FootSweep& foot : sweep.feet) add_slopes(ground, foot, slopes);
-        plane.slope_x = slopes.x.shared();
-        plane.slope_y = slopes.y.shared();
-        stance.median_plane = plane;
-        stance.median_plane.slope_x = slopes.x.median();
-        stance.median_plane.slope_y = slopes.y.median();
-    } else {
-        stance.median_plane = plane;
+        AxisSlopes under;
+        AxisSlopes around;
+        for (const FootSweep& foot : sweep.feet) {
+            add_slopes(ground, foot.stance, under);
+            add_slopes(ground, foot.around, around);
+        }
+        plane.slope_x = under.x.shared();
+        plane.slope_y = under.y.shared();
+        stance.median_plane.slope_x = around.x.median();
+        stance.median_plane.slope_y = around.y.median();
     }
     for (std::size_t i = 0; i < sweep.feet.size(); ++i) {
         Sums own;

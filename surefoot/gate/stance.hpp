@@ -55,11 +55,13 @@ struct Stance {
 /// Finds the mean height of the ground under both feet (or takes the height of the query if its
 /// source is `given`) and its slope.
 ///
-/// The slopes come from pairs of cells under one foot, half an extent of the foot apart, that are
-/// both measured or both attested. So a difference of height between the feet does not count. Along
-/// each axis of odom, `median_plane` has the median slope, and `plane` the slope that three
-/// quarters of the pairs reach (zero if none). So neither noise nor a sill under the toes tilts
-/// `plane`. `level`: both slopes are zero (treads).
+/// The slopes come from pairs of cells, half an area apart, that are both measured or both
+/// attested. Both cells lie in the area of one foot, so a difference of height between the feet
+/// does not count. Along each axis of odom, `plane` has the slope that three quarters of the pairs
+/// under the soles reach (zero if none): neither noise nor a sill under the toes tilts it.
+/// `median_plane` has the median slope under and around the soles (`FootSweep::around`): the larger
+/// area averages the noise of the map, which is correlated, and an edge around the soles is in
+/// fewer than half of the pairs. `level`: both slopes are zero (treads).
 [[nodiscard]] Stance find_stance(const Ground& ground,
                                  const Query& query,
                                  const Sweep& sweep,

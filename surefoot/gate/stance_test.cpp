@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -108,6 +109,49 @@ TEST(Stance, attested_ground_beside_measured_ground_of_another_height_tilts_noth
     EXPECT_EQ(stance.median_plane.slope_x, 0);
 }
 
+TEST(Stance, an_edge_ahead_or_beside_the_feet_tilts_nothing) {
+    // The feet reach from -0.126 to 0.240 m ahead and to 0.275 m aside.
+    const auto on_a_ramp_with = [](double from_x_m, double from_y_m, double height_m) {
+        return shaped([=](double x, double y) {
+            return kRamp * x + (x > from_x_m || y > from_y_m ? height_m : 0.0);
+        });
+    };
+    for (const double height_m : {-0.2, -0.06, 0.06, 0.7}) {
+        for (Terrain& terrain :
+             std::array{on_a_ramp_with(0.25, 9.0, height_m), on_a_ramp_with(9.0, 0.28, height_m)}) {
+            const Stance stance = stance_on(terrain);
+            for (const StancePlane& plane : {stance.plane, stance.median_plane}) {
+                EXPECT_NEAR(plane.tangents(250).x, kRamp, kRounded) << height_m;
+                EXPECT_NEAR(plane.tangents(250).y, 0.0, kRounded) << height_m;
+            }
+        }
+    }
+}
+
+TEST(Stance, correlated_noise_on_level_ground_slopes_the_likely_plane_by_little) {
+    // Means of 5 x 5 cells with a standard deviation of 4 mm, as the map of a floor has.
+    double worst = 0.0;
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+        std::mt19937_64 random(seed);
+        std::normal_distribution<double> noise_m(0.0, 0.020);
+        Image<double> white(244, 244);
+        std::generate_n(white.data(), white.size(), [&] { return noise_m(random); });
+        Terrain terrain;
+        for (int v = 0; v < 240; ++v) {
+            for (int u = 0; u < 240; ++u) {
+                double sum_m = 0.0;
+                for (int k = 0; k < 25; ++k) sum_m += white.at(u + k % 5, v + k / 5);
+                terrain.height.at(u, v) = static_cast<float>(sum_m / 25.0);
+            }
+        }
+        worst = std::max(worst, std::abs(stance_on(terrain).median_plane.tangents(250).x));
+    }
+    EXPECT_GT(worst, 0.001);
+    // The toes land 0.64 m ahead: less than half of the limit of a step (20 mm). The soles alone
+    // give 0.0235.
+    EXPECT_LT(worst, 0.5 * 0.020 / 0.64);
+}
+
 TEST(Stance, treads_are_level_and_unknown_ground_gives_no_stance) {
     Terrain terrain = ramp(-9.0);
     const Stance level = stance_on(terrain, 0.0, true);
@@ -155,18 +199,20 @@ TEST(Ramp, a_step_on_it_counts_from_the_ramp) {
 }
 
 TEST(Ramp, that_only_most_of_the_ground_shows_must_allow_the_step_as_level_ground_must) {
-    // Two of five rows of cells under the feet are level. So the sure slope is zero, and the floor
-    // behind lies 16 mm lower; but it lies 30 mm higher than the ramp that most rows show.
-    Terrain terrain = ramp(-0.13);
-    for (int v = 0; v < 240; ++v) {
-        for (int u = 0; u < 240 && v % 5 < 2; ++u) {
+    // Every third row of cells under the feet is level. So the sure slope is zero, and the floor
+    // behind lies 19 mm lower; but it lies more than 20 mm higher than the ramp that most rows
+    // show.
+    constexpr double kSteep = 0.1;
+    Terrain terrain = ramp(-0.13, kSteep);
+    for (int v = 0; v < 240; v += 3) {
+        for (int u = 0; u < 240; ++u) {
             const double x_m = terrain.geometry.center_m({u, v}).x();
-            if (x_m > -0.13 && x_m < 0.25) terrain.height.at(u, v) = 0.0156F;
+            if (x_m > -0.13 && x_m < 0.25) terrain.height.at(u, v) = 0.019F;
         }
     }
     const Stance stance = stance_on(terrain);
     EXPECT_EQ(stance.plane.slope_x, 0);
-    EXPECT_GT(stance.median_plane.tangents(250).x, 0.9 * kRamp);
+    EXPECT_GT(stance.median_plane.tangents(250).x, 0.8 * kSteep);
     expect_refused(ask(terrain, kBackward), Reason::step_too_high);
 }
 
