@@ -49,9 +49,15 @@ Figures figures_of(const Machine& machine, const Movement& movement) {
     f.residual_m = metres(limits.patch_residual_tenth_mm);
     // If the movement class allows a higher landing, the foot is lifted to that height.
     f.clearance_m = std::max(metres(limits.swing_clearance_tenth_mm), f.up_m);
+    f.swing_m = metres(limits.swing_clearance_tenth_mm);
     f.foot_margin_m = metres(limits.foot_margin_tenth_mm);
     f.drop_m = metres(limits.drop_tenth_mm);
     f.band_m = metres(limits.drop_band_tenth_mm);
+    if (movement.movement_class == MovementClass::stair) {
+        f.treads = {metres(machine.ankle_from_heel_tenth_mm),
+                    1e-3 * limits.tread_share_permille,
+                    metres(limits.tread_overhang_tenth_mm)};
+    }
     f.T_start_target = {{metres(movement.forward_tenth_mm), metres(movement.left_tenth_mm)},
                         movement.cos_turn,
                         movement.sin_turn};
@@ -65,11 +71,16 @@ Figures stricter(const Figures& figures, double share, double taller_m) {
                           &f.tilt_rad,
                           &f.residual_m,
                           &f.clearance_m,
+                          &f.swing_m,
                           &f.drop_m,
                           &f.lower_edge_m}) {
         *limit *= 1.0 - share;
     }
     for (double* room : {&f.sway_m, &f.foot_margin_m, &f.band_m}) *room *= 1.0 + share;
+    if (f.treads) {
+        f.treads->share = std::min(1.0, f.treads->share * (1.0 + share));
+        f.treads->overhang_m *= 1.0 - share;
+    }
     for (Figures::Part& part : f.body) {
         part.low_m *= 1.0 - share;
         part.high_m += taller_m;

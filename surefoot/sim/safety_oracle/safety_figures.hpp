@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "surefoot/core/machine.hpp"
@@ -29,11 +30,23 @@ struct Figures {
     double tilt_rad = 0.0;
     double patch_side_m = 0.0;
     double residual_m = 0.0;
-    double clearance_m = 0.0;
+    double clearance_m = 0.0;  ///< highest object that a swinging foot passes over
+    double swing_m = 0.0;      ///< the same, above the higher one of two treads
     double foot_margin_m = 0.0;
     double drop_m = 0.0;
     double band_m = 0.0;
+    /// A foot on a tread, for movements of class stair.
+    struct Treads {
+        double ankle_from_heel_m = 0.0;
+        double share = 1.0;       ///< smallest share of a foot's length that its tread carries
+        double overhang_m = 0.0;  ///< largest length of a foot beyond one end of its tread
+    };
+    std::optional<Treads> treads;
     PlanarPose T_start_target;
+
+    /// Surfaces up to this height above the stance count as ground. On stairs these are two more
+    /// treads.
+    [[nodiscard]] double reach_m() const { return treads ? 2.5 * up_m + swing_m : lower_edge_m; }
 };
 /// Returns nullptr if the machine has no such movement, or if the class of the movement is
 /// disabled.

@@ -28,6 +28,8 @@ constexpr std::array<const char*, kDangerCount> kDangerNames{"unknown_command",
                                                              "edge_too_near",
                                                              "step_up",
                                                              "step_down",
+                                                             "tread_support",
+                                                             "tread_overhang",
                                                              "tilt",
                                                              "roughness",
                                                              "obstacle_in_way",
@@ -55,7 +57,7 @@ rules::Stance stance_here(const Scene& scene,
                             T_world_field,
                             grown(feet, GroundField::kSpacing_m),
                             {sole_z_m, Vector2d::Zero()},
-                            figures.lower_edge_m);
+                            figures.reach_m());
     rules::Stance stance = rules::stand(field, figures, {});
     if (!(std::abs(stance.plane.height_m - sole_z_m) <= figures.lower_edge_m)) stance.known = false;
     return stance;
@@ -107,6 +109,8 @@ std::string describe(const Finding& f) {
             return against("a drop lies beside a landing foot at a distance of");
         case Danger::step_up: return against("a landing foot meets a step up of");
         case Danger::step_down: return against("a landing foot meets a step down of");
+        case Danger::tread_support: return against("the tread under a landing foot carries only");
+        case Danger::tread_overhang: return against("a landing foot reaches over its tread by");
         case Danger::tilt:
             return fmt::format("a landing foot would tilt by {:.1f} deg {}, limit {:.1f} deg",
                                f.value,
@@ -171,7 +175,7 @@ SafetyAnswer judge(const Scene& scene,
     const double slack_m =
         margin.position_m + kReach_m * margin.yaw_rad + 2.0 * GroundField::kSpacing_m;
     const GroundField field(
-        scene, T_world_field, rules::region_of(wide, slack_m), stance.plane, wide.lower_edge_m);
+        scene, T_world_field, rules::region_of(wide, slack_m), stance.plane, wide.reach_m());
     const auto reached = field.reached_from(
         {field.range_of(figures.feet[0]), field.range_of(figures.feet[1])}, figures.clearance_m);
 

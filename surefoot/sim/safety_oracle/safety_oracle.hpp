@@ -25,6 +25,8 @@ enum class Danger : std::uint8_t {
     edge_too_near,     ///< a drop is inside the drop band of a landing foot (value: distance)
     step_up,           ///< ground under a landing foot is higher than this movement class allows
     step_down,         ///< ground under a landing foot is lower than this movement class allows
+    tread_support,     ///< class stair: too little of a landing foot rests on its tread
+    tread_overhang,    ///< class stair: an end of a landing foot reaches too far over the nosing
     tilt,              ///< a landing foot would tilt too steeply [deg]
     roughness,         ///< ground under a patch of the sole is too far from the fitted plane
     obstacle_in_way,   ///< an object in the path of a foot (value: height of top or underside)
@@ -32,7 +34,7 @@ enum class Danger : std::uint8_t {
     overhang_too_low,  ///< like body_hits, but the underside is above the hips
     disconnected,      ///< the landing ground is not connected to the ground under the feet
 };
-inline constexpr int kDangerCount = 15;
+inline constexpr int kDangerCount = 17;
 [[nodiscard]] const char* to_string(Danger danger) noexcept;
 
 /// The worst point of one danger.
@@ -80,8 +82,19 @@ struct SafetyAnswer {
 ///   the step-up limit of the class, if larger) or hangs lower than the body's edge.
 /// - Body: no solid is in the path of a part of the body, widened by the sway.
 /// - The landing ground is joined to the standing ground without a jump above the limit of "Way".
-/// The path is straight and the turn is even. A movement of class stair, if the machine file
-/// enables it, must place the whole foot like any other movement. Rules for treads are not here.
+/// The path is straight and the turn is even.
+///
+/// A movement of class stair, if the machine file enables it, goes from tread to tread:
+/// - The ankle of every foot, before and after, stands on its tread. The tread carries at least
+///   `tread_share` of the foot, and neither end reaches over by more than `tread_overhang`. The
+///   level of a tread is the median height under the ankle. It ends where a part across the foot
+///   lies more than the drop limit lower. The carried part keeps the limits of tilt and patches.
+/// - Both feet land at one level, at most one riser (step limits of the class) from the stance.
+/// - Nothing is higher than the swing clearance above the higher tread in the path of a foot, or
+///   above its own tread within the margin of a landed foot: a riser before the toes, an object.
+/// - Around the landed foot nothing lies deeper than the next tread. Beside the carried part, even
+///   this is too deep: the flight ends there.
+/// - The body rises before it moves up, and sinks after it has moved down (ASSUMPTION).
 ///
 /// Precondition: machine.problem() == nullptr.
 [[nodiscard]] SafetyAnswer judge(const Scene& scene,
