@@ -53,8 +53,8 @@ constexpr std::array<const char*, 7> kFaultNames{
     "none", "missing", "object", "worn", "uneven", "open_side", "rail"};
 
 struct Variant {
-    const char* name;
-    double cell_m;
+    const char* name = "";
+    double cell_m = 0.0;
     double noise_m = 0.0;        ///< standard deviation of the heights
     double line_sigma_m = -1.0;  ///< of the lines of the nosings; negative = no lines
 };

@@ -2,8 +2,10 @@
 #include "surefoot/gate/foot_support.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/gate/nosing_lines.hpp"
 #include "surefoot/gate/tilt.hpp"
 
 namespace surefoot::gate {
@@ -302,15 +304,21 @@ bool gather_cells(const Scene& scene,
                   const ReachableSurfaces& reachable,
                   Findings& findings,
                   FootCells& cells) noexcept {
+    std::optional<NosingLines> lines;
+    if (scene.movement.movement_class == MovementClass::stair)
+        lines.emplace(scene.ground, scene.machine.limits, foot.landing, 0);
     return grid::for_each_overlapped_cell(
         foot.landing, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
-            const GroundCell cell = scene.ground.cell(ix, iy);
+            GroundCell cell = scene.ground.cell(ix, iy);
+            const bool sharpened = lines && lines->sharpen(ix, iy, cell);
             const Finding here = finding_at(ix, iy, foot.foot, 0, 0);
             if (!cell.known()) {
                 findings.deny(reason_of_unknown(cell.knowledge), here);
                 return false;
             }
-            if (cell.knowledge == Knowledge::measured && !reachable.contains(cell.component))
+            // A cell across a nosing can be a surface of its own.
+            if (cell.knowledge == Knowledge::measured && !sharpened &&
+                !reachable.contains(cell.component))
                 findings.deny(Reason::disconnected, here);
             // Other rules refuse heights above 3 m. The clamp keeps the sums exact.
             const auto above = [&](const StancePlane& plane) {
@@ -318,15 +326,20 @@ bool gather_cells(const Scene& scene,
                     cell.height_tenth_mm - plane.at(ix, iy), -30'000, 30'000);
             };
             const std::int64_t height = above(scene.stance.plane);
-            // Where the stance slopes less surely than it seems to, both planes must agree.
-            const std::int64_t likely = above(scene.stance.median_plane);
             cells.add(scene.ground.doubled_center(ix, iy, foot.landing_center),
                       height,
                       cell.sigma_tenth_mm);
+            // Where the ground under the feet bends or its slope is unsure, all planes must agree.
+            std::int64_t low = height;
+            std::int64_t high = height;
+            for (const StancePlane& part : scene.stance.parts) {
+                low = std::min(low, above(part));
+                high = std::max(high, above(part));
+            }
             if (!cells.has_pebble && stands_alone(scene, ix, iy, height))
                 cells.has_pebble = true;
             else
-                cells.add_extreme(here, std::min(height, likely), std::max(height, likely));
+                cells.add_extreme(here, low, high);
             return true;
         });
 }

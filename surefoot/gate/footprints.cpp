@@ -89,6 +89,20 @@ PartSweep part_sweep(const GroundBox& box,
     return sweep;
 }
 
+/// Returns the rear and the front half of a box that is widened on all sides.
+std::array<grid::FixedConvex, 2> halves_of(const GroundBox& box,
+                                           const FixedPose& pose,
+                                           std::int32_t margin) noexcept {
+    GroundBox half = box;
+    half.width_tenth_mm += 2 * margin;
+    half.length_tenth_mm = box.length_tenth_mm / 2 + margin;
+    const auto at = [&](std::int32_t forward) {
+        half.center_x_tenth_mm = box.center_x_tenth_mm + forward;
+        return grid::convex_hull(corners_of(half, pose, 0));
+    };
+    return {at(-half.length_tenth_mm / 2), at(half.length_tenth_mm / 2)};
+}
+
 FootSweep foot_sweep(Foot foot,
                      const GroundBox& box,
                      const GateLimits& limits,
@@ -98,7 +112,7 @@ FootSweep foot_sweep(Foot foot,
     FootSweep sweep;
     sweep.foot = foot;
     sweep.stance = grid::convex_hull(corners_of(box, start, 0));
-    sweep.around = grid::convex_hull(corners_of(box, start, limits.drop_band_tenth_mm));
+    sweep.halves = halves_of(box, start, limits.drop_band_tenth_mm / 2);
     sweep.landing = grid::convex_hull(corners_of(box, target, 0));
     sweep.landing_center = to_odom(target, box.center_x_tenth_mm, box.center_y_tenth_mm);
     const std::int64_t corridor = limits.foot_margin_tenth_mm + margin;
@@ -164,7 +178,7 @@ Extent extent_of(const Sweep& sweep) noexcept {
         for (const grid::FixedPoint& p : polygon.points()) extent.include(p);
     };
     for (const FootSweep& foot : sweep.feet) {
-        include(foot.around);
+        for (const grid::FixedConvex& half : foot.halves) include(half);
         include(foot.corridor);
         include(foot.edges);
     }
@@ -184,6 +198,7 @@ Sweep sweep_of(const Machine& machine,
                const Movement& movement,
                std::int64_t margin_tenth_mm) noexcept {
     Sweep sweep;
+    sweep.start = start;
     sweep.target = moved(start, movement);
     sweep.feet = {
         foot_sweep(

@@ -45,8 +45,9 @@ struct FixedPose {
 /// The regions that one foot needs for a movement. kBesideTenthMm widens corridor and band, too.
 struct FootSweep {
     Foot foot = Foot::none;
-    grid::FixedConvex stance;   ///< sole area at the start
-    grid::FixedConvex around;   ///< sole area at the start, widened by `drop_band`
+    grid::FixedConvex stance;  ///< sole area at the start
+    /// Rear and front half of the sole area at the start, widened by half of `drop_band`.
+    std::array<grid::FixedConvex, 2> halves;
     grid::FixedConvex landing;  ///< sole area at the target
     grid::FixedPoint landing_center;
     grid::FixedConvex corridor;  ///< hull of stance and landing, widened by `foot_margin`
@@ -72,6 +73,7 @@ struct PartSweep {
 struct Sweep {
     std::array<FootSweep, 2> feet;  ///< left, right
     std::array<PartSweep, Body::kMaxParts> body;
+    FixedPose start;
     FixedPose target;
 };
 
@@ -90,7 +92,7 @@ struct Extent {
 /// mm.
 [[nodiscard]] std::int64_t drift_margin(const GateLimits& limits,
                                         std::int64_t drift_tenth_mm) noexcept;
-/// Returns all regions. `margin_tenth_mm` widens all except `stance`, `around` and
+/// Returns all regions. `margin_tenth_mm` widens all except `stance`, `halves` and
 /// `landing`.
 [[nodiscard]] Sweep sweep_of(const Machine& machine,
                              const FixedPose& start,

@@ -194,7 +194,7 @@ void judge_stair(Scene scene, Findings& findings) noexcept {
     scene.lift_tenth_mm = lift_of(treads);
     findings.prove(Proof::corridors_clear, [&] { check_corridors(scene, findings); });
     findings.prove(Proof::body_clear, [&] {
-        check_body(scene, findings);
+        check_body_on_stairs(scene, findings);
         check_body_lowered(scene, treads, findings);
     });
     findings.prove(Proof::bands_solid, [&] { check_tread_bands(scene, treads, findings); });
@@ -225,7 +225,12 @@ void judge_sweep(const Machine& machine,
     findings.evidence.stance_known = scene.stance.known;
     findings.evidence.stance_height_tenth_mm = scene.stance.plane.height_tenth_mm;
 
-    findings.prove(Proof::stance_known, [&] { check_stance(scene, findings); });
+    findings.prove(Proof::stance_known, [&] {
+        if (stairs)
+            check_stance_on_treads(scene, findings);
+        else
+            check_stance(scene, findings);
+    });
     if (!scene.stance.known) {  // no height to compare with; unknown cells are already reported
         findings.deny(reason_of_unknown(Knowledge::unknown));
         return;

@@ -5,6 +5,8 @@
 #include <array>
 #include <span>
 
+#include "surefoot/gate/nosing_lines.hpp"
+
 namespace surefoot::gate {
 namespace {
 
@@ -159,18 +161,24 @@ void check_unsure(const Scene& scene,
     findings.deny(reason, finding);
 }
 
+constexpr auto kNothing = [](const Place&) noexcept {};
+constexpr auto kAsMapped = [](const Place&) noexcept {};
+
 /// Tests every cell of a region: `always(place)` for a cell inside the map, `test(place)` for a
-/// known cell. Ends at the first cell outside the map, because further ones add nothing.
-template <typename Test, typename Always>
+/// known cell. `sharpen(place)` may change a cell before. Ends at the first cell outside the map,
+/// because further ones add nothing.
+template <typename Test, typename Always, typename Sharpen = const decltype(kAsMapped)&>
 void check_region(const Scene& scene,
                   const grid::FixedConvex& region,
                   Foot foot,
                   Findings& findings,
                   Test&& test,
-                  Always&& always) noexcept {
+                  Always&& always,
+                  Sharpen&& sharpen = kAsMapped) noexcept {
     grid::for_each_overlapped_cell(
         region, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
-            const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
+            Place place{scene.ground.cell(ix, iy), ix, iy, foot};
+            sharpen(place);
             const bool inside = place.cell.knowledge != Knowledge::outside;
             if (inside) always(place);
             if (check_knowledge(scene, place, findings)) test(place);
@@ -259,18 +267,6 @@ void check_body_cell(const Scene& scene,
         scene, place, over.high_tenth_mm + scene.lift_tenth_mm, Reason::body_clearance, findings);
 }
 
-/// Returns the greatest allowed height above the stance of an object in the path of a foot. On
-/// stairs, the largest step up is added, because the foot steps over a nosing.
-std::int64_t swing_height(const Scene& scene) noexcept {
-    const GateLimits& limits = scene.machine.limits;
-    const bool stairs = scene.movement.movement_class == MovementClass::stair;
-    const auto movement_class = static_cast<std::size_t>(scene.movement.movement_class);
-    return std::int64_t{limits.swing_clearance_tenth_mm} +
-           (stairs ? limits.step[movement_class].up_tenth_mm : 0);
-}
-
-constexpr auto kNothing = [](const Place&) noexcept {};
-
 /// Requires that no drop shows in or just beyond the drop band of a foot: the map can show ground
 /// beyond the edge of a drop. A cell shows a drop if it lies lower than `drop`, or if it may lie
 /// lower than `drop` plus the depth that a foot tolerates (75 mm for the REX, the lowest kerb), or
@@ -338,14 +334,43 @@ void check_stance(const Scene& scene, Findings& findings) noexcept {
 }
 
 void check_corridors(const Scene& scene, Findings& findings) noexcept {
-    const std::int64_t height = swing_height(scene);
+    const std::int64_t height = scene.machine.limits.swing_clearance_tenth_mm + scene.lift_tenth_mm;
     const std::int64_t lifted = scene.machine.body.lower_edge_tenth_mm() + height;
     for (const FootSweep& foot : scene.sweep.feet) {
         const auto test = [&](const Place& place) {
             check_below(scene, place, Side::up, height, Reason::corridor_blocked, findings);
             check_overhead(scene, place, lifted, Reason::corridor_blocked, findings);
         };
-        check_region(scene, foot.corridor, foot.foot, findings, test, kNothing);
+        if (scene.movement.movement_class == MovementClass::walk) {
+            check_region(scene, foot.corridor, foot.foot, findings, test, kNothing);
+            continue;
+        }
+        const NosingLines lines(scene.ground, scene.machine.limits, foot.corridor, kBesideTenthMm);
+        const auto sharpen = [&](Place& place) { lines.sharpen(place.ix, place.iy, place.cell); };
+        check_region(scene, foot.corridor, foot.foot, findings, test, kNothing, sharpen);
+    }
+}
+
+void check_body_on_stairs(const Scene& scene, Findings& findings) noexcept {
+    UnknownBelowBody unknown(scene);
+    const std::span<const BodyPart> parts = scene.machine.body.all();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const grid::FixedConvex& way = scene.sweep.body[i].way;
+        const NosingLines lines(scene.ground, scene.machine.limits, way, kBesideTenthMm);
+        const BodyOver over{parts[i].low_tenth_mm, parts[i].high_tenth_mm};
+        grid::for_each_overlapped_cell(
+            way, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                Place place{scene.ground.cell(ix, iy), ix, iy, Foot::none};
+                if (!place.cell.known() && unknown.is_free(ix, iy)) return true;
+                count(place.cell, findings.evidence);
+                if (place.cell.known()) {
+                    lines.sharpen(ix, iy, place.cell);
+                    check_body_cell(scene, place, over, findings);
+                    return true;
+                }
+                deny(findings, reason_of_unknown(place.cell.knowledge), place, 0, 0);
+                return place.cell.knowledge != Knowledge::outside;
+            });
     }
 }
 

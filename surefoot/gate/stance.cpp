@@ -2,6 +2,7 @@
 #include "surefoot/gate/stance.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace surefoot::gate {
 namespace {
@@ -36,7 +37,7 @@ class Slopes {
 
     static constexpr std::size_t kFewest = 8;
 
-    std::array<std::int64_t, 1024> slopes_{};
+    std::array<std::int64_t, 512> slopes_{};
     std::size_t count_ = 0;
 };
 
@@ -97,6 +98,26 @@ void add_cells(const Ground& ground,
         });
 }
 
+/// Returns the median height of the known cells under some feet. A part of a foot can hang over the
+/// nosing of its tread. With more cells than fit, the first ones count. Empty without known cells.
+std::optional<std::int64_t> level_under(const Ground& ground,
+                                        std::span<const FootSweep> feet) noexcept {
+    std::array<std::int64_t, 2048> heights;  // NOLINT(*-member-init): only the first `count` count
+    std::size_t count = 0;
+    for (const FootSweep& foot : feet) {
+        grid::for_each_overlapped_cell(
+            foot.stance, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                const GroundCell cell = ground.cell(ix, iy);
+                if (cell.known() && count < heights.size()) heights[count++] = cell.height_tenth_mm;
+                return true;
+            });
+    }
+    if (count == 0) return std::nullopt;
+    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(heights.begin(), middle, heights.begin() + static_cast<std::ptrdiff_t>(count));
+    return *middle;
+}
+
 }  // namespace
 
 StancePlane::Tangents StancePlane::tangents(std::int64_t side_tenth_mm) const noexcept {
@@ -119,23 +140,35 @@ Stance find_stance(const Ground& ground,
     if (both.count > 0) {
         plane.middle = {grid::rounded_div(both.x, both.count),
                         grid::rounded_div(both.y, both.count)};
-        plane.height_tenth_mm = grid::rounded_div(both.z, both.count);
+        plane.height_tenth_mm =
+            level ? *level_under(ground, sweep.feet) : grid::rounded_div(both.z, both.count);
     }
     if (given) plane.height_tenth_mm = query.stance_height_tenth_mm;
-    stance.median_plane = plane;
+    stance.parts.fill(plane);
     if (!level) {
         AxisSlopes under;
-        AxisSlopes around;
-        for (const FootSweep& foot : sweep.feet) {
-            add_slopes(ground, foot.stance, under);
-            add_slopes(ground, foot.around, around);
+        std::array<AxisSlopes, 4> parts;  // rear, front, left, right
+        for (std::size_t foot = 0; foot < sweep.feet.size(); ++foot) {
+            add_slopes(ground, sweep.feet[foot].stance, under);
+            for (std::size_t half = 0; half < 2; ++half) {
+                const grid::FixedConvex& area = sweep.feet[foot].halves[half];
+                add_slopes(ground, area, parts[half]);
+                add_slopes(ground, area, parts[2 + foot]);
+            }
+        }
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            stance.parts[i].slope_x = parts[i].x.median();
+            stance.parts[i].slope_y = parts[i].y.median();
         }
         plane.slope_x = under.x.shared();
         plane.slope_y = under.y.shared();
-        stance.median_plane.slope_x = around.x.median();
-        stance.median_plane.slope_y = around.y.median();
     }
     for (std::size_t i = 0; i < sweep.feet.size(); ++i) {
+        if (level) {
+            if (const auto own = level_under(ground, {&sweep.feet[i], 1}))
+                stance.feet_tenth_mm[i] = *own - plane.height_tenth_mm;
+            continue;
+        }
         Sums own;
         add_cells(ground, sweep.feet[i], plane, own);
         if (own.count > 0) stance.feet_tenth_mm[i] = grid::rounded_div(own.z, own.count);

@@ -37,9 +37,12 @@ struct StancePlane {
 
 /// The ground under the present feet.
 struct Stance {
-    bool known = false;        ///< a cell under a foot is known, or the query gives the height
-    StancePlane plane;         ///< with the slope that the ground surely has
-    StancePlane median_plane;  ///< with its most likely slope
+    bool known = false;  ///< a cell under a foot is known, or the query gives the height
+    StancePlane plane;   ///< with the slope that the ground surely has
+    /// The same height with the slope of a part of the ground under and around the feet: the rear
+    /// of both feet, the front of both, the left foot and the right foot. They differ where the
+    /// ground bends.
+    std::array<StancePlane, 4> parts;
     /// Mean height of the known cells under each foot above `plane`; empty if no cell is known.
     std::array<std::optional<std::int64_t>, 2> feet_tenth_mm;
 
@@ -47,21 +50,21 @@ struct Stance {
     [[nodiscard]] static Stance level_at(std::int64_t height_tenth_mm) noexcept {
         Stance stance;
         stance.known = true;
-        stance.plane.height_tenth_mm = stance.median_plane.height_tenth_mm = height_tenth_mm;
+        stance.plane.height_tenth_mm = height_tenth_mm;
+        stance.parts.fill(stance.plane);
         return stance;
     }
 };
 
 /// Finds the mean height of the ground under both feet (or takes the height of the query if its
-/// source is `given`) and its slope.
+/// source is `given`) and its slope. On treads (`level`) it is the median height, and the slope is
+/// zero.
 ///
-/// The slopes come from pairs of cells, half an area apart, that are both measured or both
-/// attested. Both cells lie in the area of one foot, so a difference of height between the feet
-/// does not count. Along each axis of odom, `plane` has the slope that three quarters of the pairs
-/// under the soles reach (zero if none): neither noise nor a sill under the toes tilts it.
-/// `median_plane` has the median slope under and around the soles (`FootSweep::around`): the larger
-/// area averages the noise of the map, which is correlated, and an edge around the soles is in
-/// fewer than half of the pairs. `level`: both slopes are zero (treads).
+/// The slopes come from pairs of cells in one area of one foot, half of this area apart, that are
+/// both measured or both attested. So a difference of height between the feet does not count. Along
+/// each axis of odom, `plane` has the slope that three quarters of the pairs under the soles reach
+/// (zero if none): neither noise nor a sill under the toes tilts it. Each of `parts` has a median
+/// slope: an edge beside the soles is in fewer than half of the pairs.
 [[nodiscard]] Stance find_stance(const Ground& ground,
                                  const Query& query,
                                  const Sweep& sweep,

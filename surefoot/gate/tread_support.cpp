@@ -5,17 +5,12 @@
 #include <optional>
 
 #include "surefoot/gate/foot_support.hpp"
+#include "surefoot/gate/nosing_lines.hpp"
 
 namespace surefoot::gate {
 namespace {
 
 using grid::FixedPoint;
-
-/// Returns factor * x, rounded up and never less than x.
-std::int64_t times_up(double factor, std::int64_t x) noexcept {
-    // in range: x has 32 bits; sigma_factor is at most 10 (Machine::problem())
-    return std::max(x, static_cast<std::int64_t>(factor * static_cast<double>(x)) + 1);
-}
 
 const GroundBox& box_of(const Scene& scene, const FootSweep& foot) noexcept {
     return foot.foot == Foot::left ? scene.machine.left_foot : scene.machine.right_foot;
@@ -25,8 +20,8 @@ const StepLimits& step_limits(const Scene& scene) noexcept {
     return scene.machine.limits.step[static_cast<std::size_t>(scene.movement.movement_class)];
 }
 
-/// The axes of a landed foot. Positions count from the middle of the foot and are doubled: along =
-/// forward, across = to the left.
+/// The axes of a foot before or after the movement. Positions count from the middle of the foot and
+/// are doubled: along = forward, across = to the left.
 class FootAxes {
   public:
     struct Place {
@@ -35,9 +30,12 @@ class FootAxes {
     };
 
     FootAxes(const Scene& scene, const FootSweep& foot) noexcept
+        : FootAxes(scene, foot, scene.sweep.target) {}
+    FootAxes(const Scene& scene, const FootSweep& foot, const FixedPose& pose) noexcept
         : ground_(scene.ground),
-          pose_(scene.sweep.target),
-          middle_(foot.landing_center),
+          pose_(pose),
+          middle_(to_odom(
+              pose, box_of(scene, foot).center_x_tenth_mm, box_of(scene, foot).center_y_tenth_mm)),
           // A cell reaches half its side times (|cos| + |sin|) on each side of its centre.
           reach_(1 - grid::floor_div(
                          -(grid::magnitude(pose_.cos_yaw) + grid::magnitude(pose_.sin_yaw)) *
@@ -89,6 +87,19 @@ class FootAxes {
     std::int64_t ankle_;
     std::int64_t ankle_reach_;
 };
+
+std::array<FixedPoint, 4> corners_of(const FixedPose& pose,
+                                     const GroundBox& box,
+                                     std::int64_t margin) noexcept {
+    const std::int64_t x = box.center_x_tenth_mm;
+    const std::int64_t y = box.center_y_tenth_mm;
+    const std::int64_t half_x = (box.length_tenth_mm + 1) / 2 + margin;
+    const std::int64_t half_y = (box.width_tenth_mm + 1) / 2 + margin;
+    return {to_odom(pose, x - half_x, y - half_y),
+            to_odom(pose, x + half_x, y - half_y),
+            to_odom(pose, x + half_x, y + half_y),
+            to_odom(pose, x - half_x, y + half_y)};
+}
 
 /// Finds the mean height above the stance of the cells under the ankle.
 void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
@@ -193,6 +204,9 @@ void check_band(const Scene& scene,
     const GateLimits& limits = scene.machine.limits;
     const FootAxes axes(scene, foot);
     const std::int64_t drop = limits.drop_tenth_mm;
+    const grid::FixedConvex margin = grid::convex_hull(corners_of(
+        scene.sweep.target, box_of(scene, foot), limits.foot_margin_tenth_mm + kBesideTenthMm));
+    const NosingLines lines(scene.ground, limits, margin, kBesideTenthMm);
     grid::for_each_overlapped_cell(
         foot.band, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
             const GroundCell cell = scene.ground.cell(ix, iy);
@@ -204,12 +218,16 @@ void check_band(const Scene& scene,
             const FootAxes::Place middle = axes.middle_of(ix, iy);
             const std::int64_t near = limits.foot_margin_tenth_mm + kBesideTenthMm +
                                       times_up(limits.sigma_factor, cell.drift_tenth_mm);
-            if (axes.gap(middle) < 2 * near)
-                asked.check_below(limits,
-                                  above,
-                                  limits.swing_clearance_tenth_mm,
-                                  Reason::corridor_blocked,
-                                  findings);
+            if (axes.gap(middle) < 2 * near) {
+                GroundCell sharp = cell;
+                lines.sharpen(ix, iy, sharp);
+                const BandCell beside{sharp, asked.here};
+                beside.check_below(limits,
+                                   above + sharp.height_tenth_mm - cell.height_tenth_mm,
+                                   limits.swing_clearance_tenth_mm,
+                                   Reason::corridor_blocked,
+                                   findings);
+            }
             if (above >= -drop) {
                 asked.check_below(limits, -above, drop, Reason::drop_off, findings);
             } else if (axes.touches_ankle(middle)) {
@@ -240,15 +258,6 @@ bool is_enough(const Carried& carried, const FootAxes& axes, const GateLimits& l
            axes.length() - carried.toe <= most_over && axes.length() - carried.heel <= most_over &&
            carried.toe >= axes.ankle() + axes.ankle_reach() &&
            carried.heel >= -axes.ankle() + axes.ankle_reach();
-}
-
-/// True if the numbers of the edge are in the range of the exact geometry, and its sigma is valid.
-bool is_sound(const grid::SnapshotEdge& edge) noexcept {
-    constexpr std::int64_t kFarthest = 1'000'000;  // 100 m
-    const auto within = [](std::int64_t x) { return x >= -kFarthest && x <= kFarthest; };
-    return within(edge.from_x_tenth_mm) && within(edge.from_y_tenth_mm) &&
-           within(edge.to_x_tenth_mm) && within(edge.to_y_tenth_mm) &&
-           edge.across_sigma_tenth_mm >= 0;
 }
 
 /// Returns the shortest distance from the middle of the foot to the nosing line of the snapshot,
@@ -306,19 +315,6 @@ std::int64_t sure_end(const Scene& scene,
     return std::min(axes.length(), end);
 }
 
-std::array<FixedPoint, 4> corners_of(const FixedPose& pose,
-                                     const GroundBox& box,
-                                     std::int64_t margin) noexcept {
-    const std::int64_t x = box.center_x_tenth_mm;
-    const std::int64_t y = box.center_y_tenth_mm;
-    const std::int64_t half_x = (box.length_tenth_mm + 1) / 2 + margin;
-    const std::int64_t half_y = (box.width_tenth_mm + 1) / 2 + margin;
-    return {to_odom(pose, x - half_x, y - half_y),
-            to_odom(pose, x + half_x, y - half_y),
-            to_odom(pose, x + half_x, y + half_y),
-            to_odom(pose, x - half_x, y + half_y)};
-}
-
 /// Tests the supported part of the foot with the rules of a whole foot.
 void check_carried(const Scene& scene,
                    const FootSweep& foot,
@@ -337,6 +333,29 @@ void check_carried(const Scene& scene,
 }
 
 }  // namespace
+
+void check_stance_on_treads(const Scene& scene, Findings& findings) noexcept {
+    const GateLimits& limits = scene.machine.limits;
+    for (const FootSweep& foot : scene.sweep.feet) {
+        const FootAxes axes(scene, foot, scene.sweep.start);
+        grid::for_each_overlapped_cell(
+            foot.stance, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                if (grid::magnitude(axes.middle_of(ix, iy).along - axes.ankle()) >
+                    axes.ankle_reach())
+                    return true;
+                const GroundCell cell = scene.ground.cell(ix, iy);
+                const BandCell asked{cell, finding_at(ix, iy, foot.foot, 0, 0)};
+                if (!asked.check_knowledge(limits, findings))
+                    return cell.knowledge != Knowledge::outside;
+                const std::int64_t below =
+                    scene.stance.plane.height_tenth_mm - cell.height_tenth_mm;
+                asked.check_below(limits, below, limits.drop_tenth_mm, Reason::drop_off, findings);
+                asked.check_below(
+                    limits, -below, limits.drop_tenth_mm, Reason::step_too_high, findings);
+                return true;
+            });
+    }
+}
 
 Treads find_treads(const Scene& scene) noexcept {
     Treads treads;
@@ -359,8 +378,10 @@ void check_body_lowered(const Scene& scene, const Treads& treads, Findings& find
     for (const BodyPart& part : scene.machine.body.all()) {
         const grid::FixedConvex area =
             grid::convex_hull(corners_of(scene.sweep.target, part.box, margin));
+        const NosingLines lines(scene.ground, scene.machine.limits, area, kBesideTenthMm);
         grid::for_each_overlapped_cell(area, grid, [&](std::int64_t ix, std::int64_t iy) {
-            const GroundCell cell = scene.ground.cell(ix, iy);
+            GroundCell cell = scene.ground.cell(ix, iy);
+            lines.sharpen(ix, iy, cell);
             const std::int64_t above =
                 cell.height_tenth_mm - scene.stance.plane.height_tenth_mm - rise;
             if (cell.known() && above > part.low_tenth_mm)

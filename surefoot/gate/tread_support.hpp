@@ -24,6 +24,10 @@ struct Tread {
     std::int64_t drift_tenth_mm = 0;  ///< largest drift of the cells of the band
 };
 
+/// Tests that both ankles stand on one tread: under them no cell lies more than `drop` below or
+/// above the stance. The rest of a foot may hang over the nosing.
+void check_stance_on_treads(const Scene& scene, Findings& findings) noexcept;
+
 /// Treads under the left and the right landing foot.
 using Treads = std::array<Tread, 2>;
 [[nodiscard]] Treads find_treads(const Scene& scene) noexcept;

@@ -14,11 +14,14 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kVoid_m = -std::numeric_limits<double>::infinity();
+/// A nosing that is not square to the foot passes the band beside the foot up to this distance
+/// before or behind the end of the carried part: 5 deg over 0.2 m.
+constexpr double kSlant_m = 0.02;
 
 /// Returns the height of a sample; minus infinity without ground.
 double depth(double z_m) {
-    return std::isnan(z_m) ? kVoid_m : z_m;
+    if (std::isnan(z_m)) return -std::numeric_limits<double>::infinity();
+    return z_m;
 }
 
 bool is_enough(const FootOnTread& foot, const Rect& box, const Figures& figures) {
@@ -87,8 +90,8 @@ void check_around(Inspection& at, const FootOnTread& foot, const Rect& box) {
                          {p_field, z_m});
             return;
         }
-        const bool beside = p_body.x() > foot.carried_box.min_m.x() + kRounding &&
-                            p_body.x() < foot.carried_box.max_m.x() - kRounding;
+        const bool beside = p_body.x() > foot.carried_box.min_m.x() + kSlant_m &&
+                            p_body.x() < foot.carried_box.max_m.x() - kSlant_m;
         if (from_foot_m > figures.band_m + kRounding || (!beside && z_m >= next_z_m)) return;
         at.found.add(Danger::edge_too_near,
                      -from_foot_m,
@@ -143,7 +146,7 @@ FootOnTread foot_on_tread(const GroundField& field,
         });
     if (ankle_z_m.empty()) return on;
     on.level_m = upper_median_in_place(ankle_z_m);
-    if (on.level_m == kVoid_m) return on;
+    if (std::isinf(on.level_m)) return on;
     on.known = true;
 
     std::vector<double> lowest_m(static_cast<std::size_t>(rows),
@@ -151,7 +154,8 @@ FootOnTread foot_on_tread(const GroundField& field,
     for_samples_under(
         field, foot, T_field_body, [&](int i, int j, const Vector2d& p_field, const Vector2d& p) {
             const double z_m = depth(field.at(i, j).ground_m);
-            double& lowest = lowest_m[static_cast<std::size_t>(row_of(p.x()))];
+            const int row = row_of(p.x());
+            double& lowest = lowest_m[static_cast<std::size_t>(row)];
             lowest = std::min(lowest, z_m);
             if (z_m - on.level_m > on.highest_m) {
                 on.highest_m = z_m - on.level_m;
