@@ -89,13 +89,11 @@ PartSweep part_sweep(const GroundBox& box,
     return sweep;
 }
 
-/// Returns the rear and the front half of a box that is widened on all sides.
-std::array<grid::FixedConvex, 2> halves_of(const GroundBox& box,
-                                           const FixedPose& pose,
-                                           std::int32_t margin) noexcept {
+/// Returns the rear and the front half of a box that is widened by kAroundTenthMm.
+std::array<grid::FixedConvex, 2> halves_of(const GroundBox& box, const FixedPose& pose) noexcept {
     GroundBox half = box;
-    half.width_tenth_mm += 2 * margin;
-    half.length_tenth_mm = box.length_tenth_mm / 2 + margin;
+    half.width_tenth_mm += 2 * kAroundTenthMm;
+    half.length_tenth_mm = box.length_tenth_mm / 2 + kAroundTenthMm;
     const auto at = [&](std::int32_t forward) {
         half.center_x_tenth_mm = box.center_x_tenth_mm + forward;
         return grid::convex_hull(corners_of(half, pose, 0));
@@ -112,7 +110,7 @@ FootSweep foot_sweep(Foot foot,
     FootSweep sweep;
     sweep.foot = foot;
     sweep.stance = grid::convex_hull(corners_of(box, start, 0));
-    sweep.halves = halves_of(box, start, limits.drop_band_tenth_mm / 2);
+    sweep.halves = halves_of(box, start);
     sweep.landing = grid::convex_hull(corners_of(box, target, 0));
     sweep.landing_center = to_odom(target, box.center_x_tenth_mm, box.center_y_tenth_mm);
     const std::int64_t corridor = limits.foot_margin_tenth_mm + margin;

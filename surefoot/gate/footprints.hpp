@@ -20,6 +20,11 @@ inline constexpr std::int64_t kBesideTenthMm = 250;
 /// which the map shows this drop at the latest (docs/decisions/068-drops-beyond-the-band.md).
 inline constexpr std::int64_t kSmearTenthMm = 1'000;
 
+/// Width of the ground around the soles that shows the slope under the feet. An edge just outside
+/// the soles is then in fewer than half of the pairs of cells whose slopes count (stance.hpp). A
+/// constant, so that no limit of a machine file changes the slope.
+inline constexpr std::int32_t kAroundTenthMm = 500;
+
 /// A pose in the plane: position in units of 0.1 mm, cosine and sine of the yaw times 2^20.
 struct FixedPose {
     static constexpr int kFractionBits = 20;
@@ -46,7 +51,7 @@ struct FixedPose {
 struct FootSweep {
     Foot foot = Foot::none;
     grid::FixedConvex stance;  ///< sole area at the start
-    /// Rear and front half of the sole area at the start, widened by half of `drop_band`.
+    /// Rear and front half of the sole area at the start, widened by kAroundTenthMm.
     std::array<grid::FixedConvex, 2> halves;
     grid::FixedConvex landing;  ///< sole area at the target
     grid::FixedPoint landing_center;
