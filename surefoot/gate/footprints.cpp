@@ -6,8 +6,6 @@
 namespace surefoot::gate {
 namespace {
 
-using Corners = std::array<grid::FixedPoint, 4>;
-
 /// Drift that is covered by kBesideTenthMm and the margins of feet and body. Up to this drift, a
 /// wrong machine position caused no missed hazard (docs/lab/gate_scenes.md).
 constexpr std::int64_t kDriftWithinTenthMm = 100;
@@ -23,18 +21,6 @@ std::int64_t fraction(double value) noexcept {
     const double scaled = value * static_cast<double>(FixedPose::kOne);
     // in range: at most 1.001 * 2^20
     return static_cast<std::int64_t>(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
-}
-
-Corners corners_of(const GroundBox& box, const FixedPose& pose, std::int64_t margin) noexcept {
-    // Odd sizes grow by 0.1 mm, so that rounding never shrinks a box.
-    const std::int64_t half_x = (box.length_tenth_mm + 1) / 2 + margin;
-    const std::int64_t half_y = (box.width_tenth_mm + 1) / 2 + margin;
-    const std::int64_t x = box.center_x_tenth_mm;
-    const std::int64_t y = box.center_y_tenth_mm;
-    return {to_odom(pose, x - half_x, y - half_y),
-            to_odom(pose, x + half_x, y - half_y),
-            to_odom(pose, x + half_x, y + half_y),
-            to_odom(pose, x - half_x, y + half_y)};
 }
 
 /// An edge of a polygon, counter-clockwise.
@@ -128,6 +114,18 @@ FixedPose fixed_pose(std::int64_t x_tenth_mm,
                      double cos_yaw,
                      double sin_yaw) noexcept {
     return {{x_tenth_mm, y_tenth_mm}, fraction(cos_yaw), fraction(sin_yaw)};
+}
+
+Corners corners_of(const GroundBox& box, const FixedPose& pose, std::int64_t margin) noexcept {
+    // Odd sizes grow by 0.1 mm, so that rounding never shrinks a box.
+    const std::int64_t half_x = (box.length_tenth_mm + 1) / 2 + margin;
+    const std::int64_t half_y = (box.width_tenth_mm + 1) / 2 + margin;
+    const std::int64_t x = box.center_x_tenth_mm;
+    const std::int64_t y = box.center_y_tenth_mm;
+    return {to_odom(pose, x - half_x, y - half_y),
+            to_odom(pose, x + half_x, y - half_y),
+            to_odom(pose, x + half_x, y + half_y),
+            to_odom(pose, x - half_x, y + half_y)};
 }
 
 grid::FixedPoint to_odom(const FixedPose& pose,

@@ -44,6 +44,11 @@ struct FixedPose {
 [[nodiscard]] grid::FixedPoint to_odom(const FixedPose& pose,
                                        std::int64_t forward_tenth_mm,
                                        std::int64_t left_tenth_mm) noexcept;
+/// Returns the corners of a box in odom, counter-clockwise for base_link, widened by a margin.
+using Corners = std::array<grid::FixedPoint, 4>;
+[[nodiscard]] Corners corners_of(const GroundBox& box,
+                                 const FixedPose& pose,
+                                 std::int64_t margin_tenth_mm) noexcept;
 /// Returns the pose of base_link after the movement.
 [[nodiscard]] FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept;
 

@@ -28,12 +28,13 @@ std::int64_t times_up(double factor, std::int64_t x) noexcept {
     return std::max(x, static_cast<std::int64_t>(factor * static_cast<double>(x)) + 1);
 }
 
-bool is_sound(const grid::SnapshotEdge& edge) noexcept {
+bool is_nosing(const grid::SnapshotEdge& edge, const GateLimits& limits) noexcept {
     constexpr std::int64_t kFarthest = 1'000'000;  // 100 m
     const auto within = [](std::int64_t x) { return x >= -kFarthest && x <= kFarthest; };
     return within(edge.from_x_tenth_mm) && within(edge.from_y_tenth_mm) &&
            within(edge.to_x_tenth_mm) && within(edge.to_y_tenth_mm) &&
-           edge.across_sigma_tenth_mm >= 0 && edge.height_sigma_tenth_mm >= 0;
+           edge.across_sigma_tenth_mm >= 0 && edge.height_sigma_tenth_mm >= 0 &&
+           edge.upper_tenth_mm - std::int64_t{edge.lower_tenth_mm} > limits.drop_tenth_mm;
 }
 
 NosingLines::NosingLines(const Ground& ground,
@@ -45,9 +46,7 @@ NosingLines::NosingLines(const Ground& ground,
       tolerance_tenth_mm_(limits.patch_residual_tenth_mm) {
     const grid::FixedGrid& grid = ground.grid();
     for (const grid::SnapshotEdge& edge : ground.edges()) {
-        if (!is_sound(edge) ||
-            edge.upper_tenth_mm - std::int64_t{edge.lower_tenth_mm} <= limits.drop_tenth_mm)
-            continue;
+        if (!is_nosing(edge, limits)) continue;
         Line line;
         line.from = {edge.from_x_tenth_mm, edge.from_y_tenth_mm};
         line.to = {edge.to_x_tenth_mm, edge.to_y_tenth_mm};

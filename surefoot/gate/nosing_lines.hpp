@@ -62,7 +62,8 @@ class NosingLines {
 /// is at most 10.
 [[nodiscard]] std::int64_t times_up(double factor, std::int64_t x) noexcept;
 
-/// True if the numbers of an edge are in the range of the exact geometry, and its sigmas are valid.
-[[nodiscard]] bool is_sound(const grid::SnapshotEdge& edge) noexcept;
+/// True if the ground falls by more than `drop` at an edge, its numbers are in the range of the
+/// exact geometry, and its sigmas are valid.
+[[nodiscard]] bool is_nosing(const grid::SnapshotEdge& edge, const GateLimits& limits) noexcept;
 
 }  // namespace surefoot::gate

@@ -46,10 +46,11 @@ struct AxisSlopes {
     Slopes y;
 };
 
-/// Adds the slopes between the known cells of a polygon.
+/// Adds the slopes between the known cells of a polygon to all of `groups`.
+template <typename... Groups>
 void add_slopes(const Ground& ground,
                 const grid::FixedConvex& polygon,
-                AxisSlopes& slopes) noexcept {
+                Groups&... groups) noexcept {
     const grid::RowRuns area(polygon, ground.grid());
     const grid::FixedRun rows = area.rows();
     const grid::FixedRun columns = area.columns();
@@ -61,13 +62,16 @@ void add_slopes(const Ground& ground,
         for (std::int64_t ix = run.first; ix <= run.last; ++ix) {
             const GroundCell cell = ground.cell(ix, iy);
             if (!cell.known()) continue;
-            const auto add = [&](Slopes& along, const GroundCell& other, std::int64_t apart) {
+            const auto add = [&](Slopes AxisSlopes::*axis,
+                                 const GroundCell& other,
+                                 std::int64_t apart) {
                 // An attested height can differ from the heights measured beside it.
                 if (other.knowledge == cell.knowledge)
-                    along.add(other.height_tenth_mm - cell.height_tenth_mm, apart);
+                    ((groups.*axis).add(other.height_tenth_mm - cell.height_tenth_mm, apart), ...);
             };
-            if (run.contains(ix + apart_x)) add(slopes.x, ground.cell(ix + apart_x, iy), apart_x);
-            if (above.contains(ix)) add(slopes.y, ground.cell(ix, iy + apart_y), apart_y);
+            if (run.contains(ix + apart_x))
+                add(&AxisSlopes::x, ground.cell(ix + apart_x, iy), apart_x);
+            if (above.contains(ix)) add(&AxisSlopes::y, ground.cell(ix, iy + apart_y), apart_y);
         }
     }
 }
@@ -150,11 +154,8 @@ Stance find_stance(const Ground& ground,
         std::array<AxisSlopes, 4> parts;  // rear, front, left, right
         for (std::size_t foot = 0; foot < sweep.feet.size(); ++foot) {
             add_slopes(ground, sweep.feet[foot].stance, under);
-            for (std::size_t half = 0; half < 2; ++half) {
-                const grid::FixedConvex& area = sweep.feet[foot].halves[half];
-                add_slopes(ground, area, parts[half]);
-                add_slopes(ground, area, parts[2 + foot]);
-            }
+            for (std::size_t half = 0; half < 2; ++half)
+                add_slopes(ground, sweep.feet[foot].halves[half], parts[half], parts[2 + foot]);
         }
         for (std::size_t i = 0; i < parts.size(); ++i) {
             stance.parts[i].slope_x = parts[i].x.median();

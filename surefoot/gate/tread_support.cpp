@@ -88,19 +88,6 @@ class FootAxes {
     std::int64_t ankle_reach_;
 };
 
-std::array<FixedPoint, 4> corners_of(const FixedPose& pose,
-                                     const GroundBox& box,
-                                     std::int64_t margin) noexcept {
-    const std::int64_t x = box.center_x_tenth_mm;
-    const std::int64_t y = box.center_y_tenth_mm;
-    const std::int64_t half_x = (box.length_tenth_mm + 1) / 2 + margin;
-    const std::int64_t half_y = (box.width_tenth_mm + 1) / 2 + margin;
-    return {to_odom(pose, x - half_x, y - half_y),
-            to_odom(pose, x + half_x, y - half_y),
-            to_odom(pose, x + half_x, y + half_y),
-            to_odom(pose, x - half_x, y + half_y)};
-}
-
 /// Finds the mean height above the stance of the cells under the ankle.
 void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const FootAxes axes(scene, foot);
@@ -205,7 +192,7 @@ void check_band(const Scene& scene,
     const FootAxes axes(scene, foot);
     const std::int64_t drop = limits.drop_tenth_mm;
     const grid::FixedConvex margin = grid::convex_hull(corners_of(
-        scene.sweep.target, box_of(scene, foot), limits.foot_margin_tenth_mm + kBesideTenthMm));
+        box_of(scene, foot), scene.sweep.target, limits.foot_margin_tenth_mm + kBesideTenthMm));
     const NosingLines lines(scene.ground, limits, margin, kBesideTenthMm);
     grid::for_each_overlapped_cell(
         foot.band, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
@@ -274,8 +261,7 @@ std::optional<std::int64_t> nosing_line(const Scene& scene,
     for (const grid::SnapshotEdge& edge : scene.ground.edges()) {
         const std::int64_t above =
             edge.upper_tenth_mm - scene.stance.plane.height_tenth_mm - tread.rise_tenth_mm;
-        if (!is_sound(edge) || grid::magnitude(above) > limits.patch_residual_tenth_mm ||
-            edge.upper_tenth_mm - std::int64_t{edge.lower_tenth_mm} <= limits.drop_tenth_mm)
+        if (!is_nosing(edge, limits) || grid::magnitude(above) > limits.patch_residual_tenth_mm)
             continue;
         const auto end = [&](std::int32_t x, std::int32_t y) {
             return axes.place_of({2 * (grid.origin_x + x - foot.landing_center.x),
@@ -327,7 +313,7 @@ void check_carried(const Scene& scene,
     part.length_tenth_mm = static_cast<std::int32_t>(carried.length() / 2);
     FootSweep landed = foot;
     const FixedPose& target = scene.sweep.target;
-    landed.landing = grid::convex_hull(corners_of(target, part, 0));
+    landed.landing = grid::convex_hull(corners_of(part, target, 0));
     landed.landing_center = to_odom(target, part.center_x_tenth_mm, part.center_y_tenth_mm);
     check_landing(scene, landed, part, reachable, findings);
 }
@@ -377,7 +363,7 @@ void check_body_lowered(const Scene& scene, const Treads& treads, Findings& find
     const std::int64_t margin = scene.machine.body.sway_tenth_mm + kBesideTenthMm;
     for (const BodyPart& part : scene.machine.body.all()) {
         const grid::FixedConvex area =
-            grid::convex_hull(corners_of(scene.sweep.target, part.box, margin));
+            grid::convex_hull(corners_of(part.box, scene.sweep.target, margin));
         const NosingLines lines(scene.ground, scene.machine.limits, area, kBesideTenthMm);
         grid::for_each_overlapped_cell(area, grid, [&](std::int64_t ix, std::int64_t iy) {
             GroundCell cell = scene.ground.cell(ix, iy);

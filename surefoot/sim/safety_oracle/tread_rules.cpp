@@ -38,7 +38,7 @@ void check_support(Inspection& at, const FootOnTread& foot, const Rect& box) {
         const double wanted_m = figures.treads->share * (box.max_m.x() - box.min_m.x());
         at.found.add(Danger::tread_support, -foot.carried_m(), foot.carried_m(), wanted_m, middle);
     }
-    const double over_m = std::max(foot.heel_over_m, foot.toe_over_m);
+    const double over_m = foot.over_m();
     if (over_m > figures.treads->overhang_m + kRounding)
         at.found.add(Danger::tread_overhang, over_m, over_m, figures.treads->overhang_m, middle);
     if (foot.highest_m > figures.residual_m + kRounding) {
@@ -124,6 +124,10 @@ double FootOnTread::carried_m() const {
     return std::max(0.0, carried_box.max_m.x() - carried_box.min_m.x());
 }
 
+double FootOnTread::over_m() const {
+    return std::max(heel_over_m, toe_over_m);
+}
+
 FootOnTread foot_on_tread(const GroundField& field,
                           const Rect& foot,
                           const Figures& figures,
@@ -165,10 +169,8 @@ FootOnTread foot_on_tread(const GroundField& field,
     const auto carries = [&](int row) {
         return lowest_m[static_cast<std::size_t>(row)] >= on.level_m - figures.drop_m - kRounding;
     };
-    const int first_of_ankle = row_of(ankle_m - reach_m);
-    const int last_of_ankle = row_of(ankle_m + reach_m);
-    int first = first_of_ankle;
-    int last = last_of_ankle;
+    int first = row_of(ankle_m - reach_m);
+    int last = row_of(ankle_m + reach_m);
     bool on_tread = true;
     for (int row = first; row <= last; ++row) on_tread = on_tread && carries(row);
     if (!on_tread) {
@@ -195,8 +197,8 @@ Stance stand_on_treads(const GroundField& field,
         const Rect& box = figures.feet[k];
         const FootOnTread foot = foot_on_tread(field, box, figures, T_field_body);
         if (!foot.known || foot.carried.points.empty()) return stance;
-        const double over_m = std::max(foot.heel_over_m, foot.toe_over_m);
-        if (!is_enough(foot, box, figures) || over_m > figures.treads->overhang_m + kRounding)
+        if (!is_enough(foot, box, figures) ||
+            foot.over_m() > figures.treads->overhang_m + kRounding)
             stance.void_at_m = T_field_body * Vector2d(0.5 * (box.min_m + box.max_m));
         level_m[k] = foot.level_m;
         stance.tilt_rad = std::max(stance.tilt_rad, foot.carried.tilt_rad());

@@ -23,15 +23,15 @@ struct FootOnTread {
     double highest_m = 0.0;
 
     [[nodiscard]] double carried_m() const;  ///< length of the carried part
+    [[nodiscard]] double over_m() const;     ///< the longer one of both overhangs
 };
 [[nodiscard]] FootOnTread foot_on_tread(const GroundField& field,
                                         const Rect& foot,
                                         const Figures& figures,
                                         const PlanarPose& T_field_body);
 
-/// Finds the stance on treads: a level plane at the mean level of both ankles. The ground is
-/// missing
-/// (`void_at_m`) under a foot of which too little rests on its tread.
+/// Finds the stance on treads: a level plane at the mean level of both ankles. `void_at_m` is set
+/// for a foot of which too little rests on its tread.
 [[nodiscard]] Stance stand_on_treads(const GroundField& field,
                                      const Figures& figures,
                                      const PlanarPose& T_field_body);
